@@ -107,15 +107,18 @@ void OutputWriter::add_bias(const Image& m, const Delivery& d, EnviHeader& h) co
   const size_t state = d.sensor.tasks()[d.result.task].captures[d.result.capture].state;
   const std::vector<BandBias> bias = bias_of(biases_, d.sensor.name(), state);
   if (bias.empty()) return;
-  std::string relative = "{", floor = "{";
+  std::string relative = "{", floor = "{", absolute = "{";
   for (size_t i = 0; i < m.values; ++i) {
     const BandBias& b = bias[i % bias.size()];
     relative += strf("%s%.3g", i ? ", " : "", b.relative), floor += strf("%s%.4g", i ? ", " : "", b.floor);
+    absolute += strf("%s%.3g", i ? ", " : "", b.absolute);
   }
   h.extra.push_back({"spectral bias", relative + "}"});
   h.extra.push_back({"spectral bias units", "1, of the radiance or of spectral bias floor where that is more"});
   h.extra.push_back({"spectral bias floor", floor + "}"});
   h.extra.push_back({"spectral bias floor units", "W/(m2 sr um)"});
+  h.extra.push_back({"spectral bias absolute", absolute + "}"});
+  h.extra.push_back({"spectral bias absolute units", "W/(m2 sr um), besides"});
 }
 
 void OutputWriter::open_radiance(Image& m, const Delivery& d, const std::string& base, const std::string& about) const {

@@ -131,11 +131,14 @@ std::vector<AirChoice::Worst> AirChoice::judge(const SpectralState& state) const
   for (size_t b = 0; b < bands_.size(); ++b) {
     size_t farthest = products.products.size();
     for (size_t p = 0; p < products.products.size(); ++p) {
-      if (!(means_[b][p].mean > 0)) continue;
+      if (!(means_[b][p].mean > 0 || means_[b][p].dark > 0)) continue;
       double value = 0;
       for (size_t k = 0; k < cells[b].share.size(); ++k)
         value += cells[b].share[k] * products.at(products.products[p], cells[b].first + k);
-      if (const double e = means_[b][p].error(value); e > worst[b].error) worst[b].error = e, farthest = p;
+      if (means_[b][p].dark > 0)
+        worst[b].of_dark = std::max(worst[b].of_dark, std::fabs(value - means_[b][p].dark));
+      else if (const double e = means_[b][p].error(value); e > worst[b].error)
+        worst[b].error = e, farthest = p;
     }
     worst[b].under = held_out_.name_of(farthest);
   }

@@ -30,7 +30,8 @@ class AirChoice {
 
   struct Worst {
     double error = 0;
-    std::string under;  // which product
+    std::string under;   // which product
+    double of_dark = 0;  // W/(m2 sr um), the largest error of lights that are too dark for bins to be chosen for them
   };
   // Of each band, on held-out paths, by the bins of a state.
   std::vector<Worst> judge(const SpectralState& state) const;

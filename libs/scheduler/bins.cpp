@@ -231,7 +231,7 @@ class StateInAir {
     bias_.clear(), under_.clear();
     for (size_t b = 0; b < bands_.size(); ++b) {
       const double error = std::max(worst[b].error, without_gases_.error_of(b));
-      bias_.push_back({error, floors[b], error <= without_gases_.wanted()});
+      bias_.push_back({error, floors[b], error <= without_gases_.wanted(), worst[b].of_dark});
       under_.push_back(worst[b].error >= error ? worst[b].under : std::string());
     }
   }

@@ -149,14 +149,14 @@ void ResultBuilder::widen() {
     }
 }
 
-// So does what the bins do to bands that are not within the spectral error that is wanted.
+// So does what the bins do to bands that are not within the spectral error that is wanted, and what dark lights lack.
 void ResultBuilder::add_bias() {
   const size_t bands = result_.bands;
   for (size_t b = 0; b < bias_.size(); ++b) {
-    if (bias_[b].within) continue;
+    if (bias_[b].within && !(bias_[b].absolute > 0)) continue;
     for (size_t v = b; v < result_.standard_error.size(); v += bands) {
       double& error = result_.standard_error[v];
-      error = std::hypot(error, bias_[b].of(std::fabs(result_.radiance[v])));
+      error = std::hypot(error, bias_[b].within ? bias_[b].absolute : bias_[b].of(std::fabs(result_.radiance[v])));
     }
   }
 }

@@ -8,12 +8,14 @@
 
 namespace suite {
 
-// A bound: `relative` times the band's radiance or `floor`, whichever is larger.
+// A bound: `relative` times the band's radiance or `floor`, whichever is larger, and `absolute`, which is what lights
+// lack that are far darker than others and for which no bins are chosen (the air's own emission beside a lamp).
 struct BandBias {
   double relative = 0;
-  double floor = 0;    // W/(m2 sr um)
-  bool within = true;  // what is wanted
-  double of(double radiance) const { return relative * (radiance > floor ? radiance : floor); }
+  double floor = 0;     // W/(m2 sr um)
+  bool within = true;   // what is wanted
+  double absolute = 0;  // W/(m2 sr um)
+  double of(double radiance) const { return relative * (radiance > floor ? radiance : floor) + absolute; }
 };
 
 // Of the bands of each state of sensors, by the sensor's name and the state's number; missing: not known.

@@ -245,7 +245,9 @@ std::vector<BandMean> band_means(const SpectralProducts& all, const BandCells& b
     const SpectralProducts::Product& p = all.products[i];
     const double of_light = light[p.light == SpectralProducts::kOne ? all.spectra.size() : p.light];
     const double dark = plain(p) ? 0 : p.factors[1] == SpectralProducts::kOne ? kDarkFactor : kDarkFactors;
-    if (!(of_light > kDarkLight * brightest && means[i].mean > dark * of_light)) means[i].mean = 0;
+    if (of_light > kDarkLight * brightest && means[i].mean > dark * of_light) continue;
+    if (plain(p)) means[i].dark = means[i].mean;
+    means[i].mean = 0;
   }
   raise_scales(all, band, means);
   for (size_t i = 0; i < means.size(); ++i)

@@ -61,6 +61,7 @@ struct BandCells {
 // of several factors below 1e-4 of its light, one factor below 1e-6.
 struct BandMean {
   double mean = 0, scale = 1;  // errors are relative to the scale
+  double dark = 0;             // the mean of a light that is too dark to matter
   double error(double value) const { return std::fabs(value - mean) / scale; }
 };
 std::vector<BandMean> band_means(const SpectralProducts& all, const BandCells& band);

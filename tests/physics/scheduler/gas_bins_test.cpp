@@ -6,6 +6,7 @@
 
 #include "light/kinds/solar_spectrum.h"
 #include "scheduler/air_bins.h"
+#include "scheduler/seen_lights.h"
 #include "spectral/planck.h"
 #include "support/bins_kit.h"
 #include "support/even_air.h"
@@ -119,6 +120,39 @@ TEST(GasBins, ThermalBandsWithin50Millikelvin) {
     worst_even = std::max(worst_even, std::fabs(brightness_temperature(um[b], j.bands[b].even) - kelvin));
   }
   EXPECT_GT(worst_even, 0.2);
+}
+
+// Beside a light that is a million times brighter no bins are chosen for the ground's emission; what it lacks is known.
+TEST(GasBins, LightsThatAreTooDarkToMatterHaveAnError) {
+  const std::vector<Band> bands{Band::rectangular("b", 2.2, 0.1)};
+  ModelSpec model;
+  model.model = "lambert";
+  model.curves["reflectance"] = Curve::constant(0.3);
+  const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("ground", model)});
+  for (const double irradiance : {1e6, 1e-3}) {
+    SourceSpecs sources;
+    sources.add(SunSpec{{{0.6, 0, 0.8}, 0.00465, Curve::constant(irradiance)}});
+    auto air = std::make_shared<AirSpec>(summer());
+    air->gases = nullptr, air->molecules = false;
+    sources.air = air;
+    test::BinSensor sensor({{{0, 0, 3000}, {0, 0, -1}, 0}}, bands, 16, 1e-3);
+    const BinReport r = choose_bins(*scene, {&sources, 1}, sensor).at(0);
+    const double kelvin = air->profile.levels.front().temperature;
+    const std::vector<float> chosen = blackbody_means(sensor.state().bins, kelvin);
+    const BandProjection projection(sensor.state(), bands);
+    double mean = 0;
+    for (size_t i = 0; i < chosen.size(); ++i) mean += projection.weight(0, i) * double{chosen[i]};
+    const double right = planck_band_radiance(2.15, 2.25, kelvin) / 0.1, off = std::fabs(mean - right);
+    ASSERT_EQ(r.bias.size(), 1u);
+    std::printf("%g: %zu bins, %.3g of %.3g off, %.3g known\n", irradiance, r.bins, off, right, r.bias[0].absolute);
+    if (irradiance > 1) {
+      EXPECT_GT(off, 0.01 * right) << "the case shows nothing";
+      EXPECT_NEAR(r.bias[0].absolute, off, 0.2 * off);
+    } else {
+      EXPECT_LT(off, 2e-3 * right);
+      EXPECT_EQ(r.bias[0].absolute, 0);
+    }
+  }
 }
 
 // What the report says of each band holds, and bands that are far off are named by wavelength.
