@@ -41,16 +41,19 @@ class Shells {
     if (height < heights_[1]) return 0;
     return static_cast<size_t>(std::upper_bound(heights_.begin() + 1, heights_.end(), height) - heights_.begin()) - 1;
   }
-  // The local vertical. Undefined at the centre.
+  // The local vertical. Straight down from the scene's origin rays pass the centre, where it is any direction.
   Dir up(Vec3 p) const {
-    const Vec3 q = p - zero_;
-    return curvature_ == 0 ? Dir{0, 0, 1} : normalized(q * curvature_ + Vec3{0, 0, 1});
+    if (curvature_ == 0) return {0, 0, 1};
+    const Vec3 from_centre = (p - zero_) * curvature_ + Vec3{0, 0, 1};
+    return dot(from_centre, from_centre) > 0 ? normalized(from_centre) : Dir{0, 0, 1};
   }
   // A point at this height: the one on the vertical of the point of height zero above the centre.
   Vec3 above_zero(double height) const { return zero_ + Vec3{0, 0, height}; }
-  // Cosine of a direction with the local vertical of a point, whose height is known.
+  // Cosine of a direction with the local vertical of a point, whose height is known; -1..1, also within decimetres of
+  // the centre, where the distance from it is lost to rounding.
   double cosine(Vec3 p, double height, Dir d) const {
-    return (d.z + curvature_ * dot(p - zero_, d)) / (1 + curvature_ * height);
+    const double along = d.z + curvature_ * dot(p - zero_, d), from_centre = 1 + curvature_ * height;
+    return from_centre > 0 ? std::clamp(along / from_centre, -1.0, 1.0) : 0;
   }
   // Least height on a straight segment; distance may be infinite (minus infinity where a flat world is left downwards).
   double lowest_height(Vec3 from, Dir d, double distance) const;

@@ -257,5 +257,21 @@ TEST(Shells, BadHeightsAreRefused) {
   EXPECT_THAT(message_of([] { Shells::round({}, 10, {-11, 1}); }), HasSubstr("below the centre"));
 }
 
+// Straight down from the scene's origin there is the centre of the Earth, where no ground ends a ray.
+TEST(Shells, DirectionsNearTheCentre) {
+  const double radius = 6371e3;
+  const Shells shells = Shells::round({0, 0, -radius}, radius, {0, 1e3, 1e5});
+  for (const double beside : {0.0, 1e-9, 1e-3, 0.02, 0.06, 1.0})
+    for (const double above : {-0.1, -1e-9, 0.0, 1e-6, 0.03}) {
+      const Vec3 p{beside, 0.3 * beside, -radius + above};
+      const double height = shells.height(p);
+      for (const Dir d : {Dir{0, 0, -1}, Dir{0, 0, 1}, normalized(Vec3{1, 2, 0.5})}) {
+        const double c = shells.cosine(p, height, d);
+        EXPECT_TRUE(c >= -1 && c <= 1) << beside << " " << above << ": " << c;
+      }
+      EXPECT_NEAR(length(shells.up(p)), 1, 1e-12) << beside << " " << above;
+    }
+}
+
 }  // namespace
 }  // namespace suite
