@@ -170,8 +170,8 @@ class Site:
             words = len(paragraph.split())
             if words > WORDS:
                 self.faults.append(f"docs/{page}: a paragraph of {words} words, {WORDS} at most: {' '.join(paragraph.split()[:8])} ...")
-        if not INCLUDE.search(text) and not re.search(r"^(```|    \S)|\bExample\b", text, re.M):
-            self.faults.append(f"docs/{page}: no worked example (a block, or a sentence that begins with 'Example')")
+        if not INCLUDE.search(text) and not re.search(r"^(```|    \S|> )|\bExample\b", text, re.M):
+            self.faults.append(f"docs/{page}: no worked example (a block, a quotation, or a sentence that begins with 'Example')")
 
 
 def copy_files(root, out):
