@@ -1,4 +1,4 @@
-// Absorption of gases as tables of k over bands of wavenumber, pressure, temperature and g, and the provider over them.
+// Absorption look-up tables (LUT): k over bands of wavenumber, pressure, temperature and g, and their provider.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// How many paths each problem gets, decided without bias.
+// Sample allocation: how many paths each problem gets, decided without bias.
 #pragma once
 #include <span>
 #include <vector>

@@ -38,7 +38,7 @@ struct DetectorSpec {
   double background = 0, netd = 0;
 };
 
-// Temporal noise against a blackbody that fills the view.
+// Noise-equivalent temperature difference (NEDT, NETD): temporal noise against a blackbody that fills the view.
 struct NoiseAtBackground {
   double own = 0;    // electrons, standard deviation: shot noise of signal and dark current, read noise, quantisation
   double slope = 0;  // electrons/K

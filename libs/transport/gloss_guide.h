@@ -1,5 +1,5 @@
-// Where light comes from that glossy surfaces throw on others: a density of directions for every place, made from
-// photons (gloss_photons.h), by which paths draw a share of their continuations.
+// Photon guiding for caustics of glossy surfaces: a density of directions for every place, made from photons
+// (gloss_photons.h), by which paths draw a share of their continuations.
 //
 // Photons are told apart by where they land (a k-d tree); those of a cell stand for all of its places. Each is
 // remembered by where it comes from, not by its direction, so that a place in the cell looks at the surface that

@@ -1,4 +1,4 @@
-// Light that glossy surfaces throw on others: photons that a small light has sent and surfaces have turned within
+// Photons for guiding to caustics of glossy surfaces: those a small light has sent and surfaces have turned within
 // narrow lobes, where they land, and where they come from. They say where paths should look for such light
 // (gloss_guide.h) and count nothing themselves, so what they neglect (media, the air, colours but one) is noise at
 // most.

@@ -1,5 +1,5 @@
-// Definitions of kernel.h: paths that have ended go back to a place in the air that they have passed.
-//
+// Definitions of kernel.h: residual estimator over the one-dimensional air field: paths that have ended go back to a
+// place in the air that they have passed.
 // Every flight of a path is remembered by chance, in proportion to what is scattered on it, times the throughput; one
 // of them in the end (reservoir sampling: M. Chao, "A general purpose unequal probability sampling plan", 1982). When
 // the path has ended it goes on from a place on that one, with what it had there, as if it had been scattered; its

@@ -1,4 +1,4 @@
-// Definitions of kernel.h: paths that go on in more than one way, one after the other.
+// Definitions of kernel.h: path splitting: paths that go on in more than one way, one after the other.
 //
 // A branch is kept as the path that has just left its event: lane, throughput, bodies around it. When the path under
 // way has ended, the last branch that was kept goes on in the same lane, and its light is added to the same sums: all

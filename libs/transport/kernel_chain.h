@@ -1,5 +1,5 @@
-// Definitions of kernel.h: light that comes to a surface through water that scatters it on its way.
-//
+// Definitions of kernel.h: multi-vertex (joint) volumetric next-event estimation (NEE): light that comes to a surface
+// through water that scatters it on its way.
 // Water scatters forwards, several times on a way of some metres, and what comes to a place from a small sun is as
 // likely to have been scattered 0, 1, 2 or n times. A path that looks for it from the place draws directions without
 // knowing whether they will end near the sun's. So they are drawn from its end: where a node has found a way to the

@@ -1,5 +1,5 @@
-// Definitions of kernel.h: continuations towards light that glossy surfaces throw (gloss_guide.h). A surface in such
-// light draws a share of its continuations there, the others as it draws itself; both have the density of the mixture.
+// Definitions of kernel.h: caustics by photon guiding (gloss_guide.h). A surface in such light draws a share of its
+// continuations where photons came from, the others as it draws itself; both have the density of the mixture.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Definitions of kernel.h: questions to lights, their answers, and how contributions are handed over.
+// Definitions of kernel.h: next-event estimation (NEE): light samples, shadow rays, handing over of contributions.
 #pragma once
 #include <limits>
 

@@ -1,4 +1,4 @@
-// Definitions of kernel.h: lights behind smooth interfaces (refracted_sight.h).
+// Definitions of kernel.h: manifold next-event estimation (MNEE): lights behind smooth interfaces (refracted_sight.h).
 //
 // Every node asks far lights that are small, and a place on one of the lamps, for all ways through such interfaces,
 // whatever the straight line towards the light meets; so what continuations of the node find of the light after a

@@ -1,4 +1,4 @@
-// Definitions of kernel.h: side flights of paths in media that scatter forwards.
+// Definitions of kernel.h: splitting with a light-directed scattering vertex, in media that scatter forwards.
 //
 // A path in a cloud asks for the sun at each of its events, and what it finds there is the phase function: hundreds of
 // times its mean when the path happens to travel along with the light, which few paths do and which is most of what

@@ -1,5 +1,5 @@
-// The air on sensors' own ways that hardly differ: what it does on one of them is found exactly, and counts for the
-// others of a wave with the difference found now and then (a control variate), so that the mean stays that of finding
+// Control variate for the air on sensors' rays that hardly differ: what it does on one of them is found exactly, and
+// counts for the others of a wave with the difference found now and then, so that the mean stays that of finding
 // it each time. A frame of many bands spends as much on its air as on its surfaces otherwise.
 //
 // With probability p a way is T = T0 + (T_exact - T0) / p, and S alike, else T0, S0. Ways count as hardly different

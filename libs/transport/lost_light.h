@@ -1,4 +1,4 @@
-// Light that paths do not find: that of sources which only an explicit sample finds (collimated or small disks, points)
+// Unresolved specular transport: light of sources that only an explicit sample finds (collimated, small disks, points)
 // where it has to pass a smooth refracting surface. The surface stops the straight line towards the source, because it
 // bends the light, and a path that it has bent meets a small disk almost never.
 //

@@ -1,5 +1,5 @@
-// Ways of light through smooth interfaces: what a straight ray cannot ask for. They lead from a node to a far light or
-// to a place on a lamp, pass the first interface that they meet, and pass or are reflected by the next ones.
+// Specular connections through smooth interfaces, for manifold next-event estimation (MNEE). They lead from a node to
+// a far light or a place on a lamp, pass the first interface that they meet, and pass or are reflected by the next.
 //
 // From a node rays are shot that smooth interfaces bend; Newton's method turns a start until its end runs towards the
 // light (manifold walk). Which starts find which way is not known; so when a random start has found one, starts are

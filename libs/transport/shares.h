@@ -1,6 +1,6 @@
-// What a path's contributions are divided by, and when paths end by chance. Each of these decisions is made here only.
-//
-// Directions are drawn from the shapes at one of the state's knots, chosen per path; every other knot could have drawn
+// MIS weights (multiple importance sampling) of a path's contributions, and Russian roulette, which ends paths by
+// chance. Each of these decisions is made here only.
+// Directions are drawn from the shapes at one of the state's hero wavelengths (knots); every other one could have drawn
 // the same path, and the one-sample balance heuristic (Veach & Guibas 1995; Wilkie et al. 2014) divides by the mean of
 // all their densities. With P_k the probability of knot k, r_k the density of the path so far under knot k relative to
 // the knot that drew it, A = sum P_k r_k, a contribution carries the factor 1 / A. After every event r and the

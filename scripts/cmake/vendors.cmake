@@ -1,4 +1,4 @@
-# Every third-party library the suite may link, as one target vendor::<name> each. Its one home is in README.md's table.
+# Every third-party library the suite may link, as one target vendor::<name> each. Its one home is in docs/develop/third_party.md.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)

@@ -6,7 +6,7 @@ BENCHES = (
             "medians of the ratios with their quartiles; baking.", ("tests/bench/air", "--pairs", "2", "--paths", "4")),
     ("Heat", "`tests/bench/heat --elements 1000,10000`: a street's day in a balance of heat, 64 paths an element, its stages, all cores.",
      ("tests/bench/heat", "--elements", "1000,10000")),
-    ("Water", "`build/release/bench/refraction_bench`: a pool's floor under waves and a disk of 1 degree, the sun asked for through the surface and found by chance.",
+    ("Water", "`build/release/bench/refraction_bench`: a pool's floor under waves and a disk of 1 degree, the sun by manifold NEE through the surface and by chance.",
      ("build/release/bench/refraction_bench",)),
     ("Ranks", "`tests/bench/ranks build/results`: efficiency of tracing that `--dry-run --ranks` forecasts for sample scenes, 256 paths a pixel, one thread a rank.",
      ("tests/bench/ranks", "build/results", "calibration_range", "landsat_like", "night_street", "plume")),

@@ -1,4 +1,4 @@
-"""README and notebooks run as they stand, and the way to a first spectrum is short."""
+"""READMEs, pages of docs and notebooks run as they stand, and the way to a first spectrum is short."""
 import contextlib
 import io
 import json
@@ -41,6 +41,16 @@ class Documents(Case):
         self.assertIn("materials.lawn.reflectence", said)
         self.assertIn("750 nm", said)
         self.assertTrue((self.folder / "chips/annotations.json").exists())
+
+    def test_the_pages_of_docs_run(self):
+        pages = {page: BLOCK.findall(page.read_text()) for page in sorted((ROOT / "docs").rglob("*.md"))}
+        pages = {page: [text for kind, text in blocks if kind == "python"] for page, blocks in pages.items()}
+        self.assertGreater(sum(map(len, pages.values())), 0)
+        self.in_folder()
+        for page, parts in pages.items():
+            with self.subTest(page.name):
+                _, cpu = self.run_code(parts, page.name)
+                self.assertLess(cpu, SECONDS)
 
     def test_the_main_readme_runs(self):
         self.in_folder()
