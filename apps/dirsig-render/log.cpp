@@ -74,7 +74,8 @@ Json json_of(std::span<const JobReport::SensorShortfall> sensors) {
 
 }  // namespace
 
-void write_log(const std::string& path, const JobReport& r, const JobOptions& options) {
+void write_log(const std::string& path, const JobReport& r, const JobOptions& options,
+               std::span<const std::string> air_limits) {
   Json j = Json::object();
   j.set("command", command_line());
   j.set("version", kVersion);
@@ -102,6 +103,9 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   for (const SensorQuality& q : r.quality) quality.push(json_of(q));
   j.set("quality", std::move(quality));
   j.set("lacks", json_of(r.shortfalls));
+  Json limits = Json::array();
+  for (const std::string& sentence : air_limits) limits.push(sentence);
+  j.set("air_limits", std::move(limits));
   Json captures = Json::array();
   for (const CaptureLog& c : r.log) {
     Json one = json_of(c.statistics);

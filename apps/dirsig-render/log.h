@@ -1,5 +1,6 @@
 // The log of a run, render.json: what was run, capture by capture.
 #pragma once
+#include <span>
 #include <string>
 
 #include "options.h"
@@ -7,7 +8,9 @@
 
 namespace suite {
 
-void write_log(const std::string& path, const JobReport& report, const JobOptions& options);
+// air_limits: the sentences of tell_air.
+void write_log(const std::string& path, const JobReport& report, const JobOptions& options,
+               std::span<const std::string> air_limits);
 
 // Largest memory that this process has had so far.
 double peak_bytes();

@@ -207,10 +207,10 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
 
 // What is told and written of a whole run.
 void conclude(const JobReport& report, const JobOptions& options, const std::string& folder, const Simulation& sim,
-              const LoadedScene& loaded, OutputWriter& writer) {
+              const LoadedScene& loaded, OutputWriter& writer, std::span<const std::string> air_limits) {
   tell(report, *loaded.scene, options, folder);
   for (const auto& reads : loaded.later) note(reads->text());
-  write_log(in_folder(folder, "render.json"), report, options);
+  write_log(in_folder(folder, "render.json"), report, options, air_limits);
   if (!report.captures_waiting) write_sensor_logs(sim, writer);
 }
 
@@ -243,15 +243,17 @@ void check_usage(const Cli& cli, const RenderOptions& o, const Ranks* ranks) {
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
 }
 
-// Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
-void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
+// Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way. Returns what
+// was told of the air.
+std::vector<std::string> check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
     for (const Task& task : sim.sensors[s]->tasks())
       for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
   note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors, options.pipeline)));
   look_through_tables(sim.sources, scene, sim.sensors);
   for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
-  for (const std::string& sentence : tell_air(sim.sources, scene, sim.sensors, options)) note(sentence);
+  const std::vector<std::string> air_limits = tell_air(sim.sources, scene, sim.sensors, options);
+  for (const std::string& sentence : air_limits) note(sentence);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
@@ -260,6 +262,7 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
     check_air_asked(sim, scene, *sensor);
     choose_bins_of(*sensor, scene, standing, options.biases);
   }
+  return air_limits;
 }
 
 // The state of the run, where it is kept; ranks that are not alike are refused, and all are told the budget.
@@ -360,7 +363,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   const LoadedScene loaded = load_scenes(sim, options, o, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
-  check_sensors(sim, *scene, options);
+  const std::vector<std::string> air_limits = check_sensors(sim, *scene, options);
   if (o.dry_run) dry_run(scene, sim, options, o);
   if (o.dry_run && forecast.empty()) return 0;
   if (o.air) return print(air_text(sim, scene));
@@ -382,7 +385,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   start_sensors(sim, options, part ? "" : o.output);
   JobReport report = run_safely(scene, sim, options, o.output, delivered);
   flags.add_to(report);
-  conclude(report, options, o.output, sim, loaded, *writer);
+  conclude(report, options, o.output, sim, loaded, *writer, air_limits);
   if (!report.stopped) return show_own(o);
   warn("stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options));
   return 128 + stop_signal();

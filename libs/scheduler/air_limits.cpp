@@ -7,10 +7,13 @@
 #include "scheduler/air_left_out.h"
 #include "scheduler/doubts.h"
 #include "scheduler/moments.h"
+#include "scheduler/scattered_once.h"
 
 namespace suite {
 
 namespace {
+
+constexpr double kMeasuredTwilight = 92.05 * kDegree;  // zenith angle of the lowest sun of glow_from_below
 
 bool endless(const Scene& scene) {
   return scene.bounds.empty() || std::any_of(scene.primitives.begin(), scene.primitives.end(),
@@ -35,21 +38,6 @@ std::optional<std::string> beyond(const AirSpec& air, const SourceSpecs& written
       reach * 1e-3, even_ground(air).c_str(), 100 * share);
 }
 
-// Traced air goes on below where no matter ends it.
-std::optional<std::string> open_below(const SourceSpecs& written, const Scene& scene, const JobOptions& job) {
-  if (written.earth || job.periodic || endless(scene)) return std::nullopt;
-  const Vec3 size = scene.bounds.size();
-  const double reach = 0.5 * std::min(size.x, size.y);
-  if (share_from_beyond(reach) < kMostFromBeyond) return std::nullopt;
-  return strf(
-      "air: the scene reaches %.3g km from its middle; beyond it nothing ends the lowest air, which goes on downwards "
-      "and "
-      "sends light back as a bright ground would (5 %% of a hazy horizon under a low sun, round a dark scene that "
-      "reaches "
-      "15 km): lay `earth` or a plane without end under it",
-      reach * 1e-3);
-}
-
 // The lowest of sun and moon over all captures: degrees from the zenith.
 struct Lowest {
   double zenith = 0;
@@ -71,6 +59,25 @@ Lowest lowest_body(const SourceSpecs& written, const Scene& scene, Sensors senso
             if (zenith > lowest.zenith) lowest = {zenith, light->key()};
           }
   return lowest;
+}
+
+// Traced air goes on below where no matter ends it.
+std::optional<std::string> open_below(const SourceSpecs& written, const Scene& scene, Sensors sensors,
+                                      const JobOptions& job) {
+  if (written.earth || job.periodic || endless(scene)) return std::nullopt;
+  const Vec3 size = scene.bounds.size();
+  const double reach = 0.5 * std::min(size.x, size.y);
+  if (share_from_beyond(reach) < kMostFromBeyond) return std::nullopt;
+  const Lowest body = lowest_body(written, scene, sensors);
+  std::string text = strf(
+      "air: the scene reaches %.3g km from its middle; beyond it nothing ends the lowest air, which goes on downwards "
+      "and sends light back as a bright ground would: over a dark scene up to %.2g %% of what is seen near the horizon, "
+      "a third of that in the zenith (0.55 um, visibility 23 km)",
+      reach * 1e-3, 100 * glow_from_below(reach, body.zenith));
+  if (body.zenith > kMeasuredTwilight)
+    text += strf("; with the %s at %.3g degrees from the zenith, lower than 92, it may be all of it", body.body.c_str(),
+                 body.zenith / kDegree);
+  return text + ": lay `earth` or a plane without end under it";
 }
 
 // Light that is scattered more than once, seen from space against another program
@@ -170,13 +177,20 @@ double share_from_beyond(double reach, double scale) {
   return sum / kParts;
 }
 
+double glow_from_below(double reach, double sun) {
+  constexpr double kHaze = 2000;  // m: scale height of what the horizon's light is scattered by
+  constexpr double kUp = 1.3, kDown = 1.6;
+  return std::min(1.0, (sun > 0.5 * kPi ? kDown : kUp) * share_from_beyond(reach, kHaze));
+}
+
 std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene, Sensors sensors,
                                   const JobOptions& job) {
+  if (written.atmosphere) return tell_scattered_once(written, scene, sensors);
   std::vector<std::string> said;
   if (!written.air) return said;
   if (written.air->gases) report_gas_limits(*written.air->gases, sensors, said);
   if (written.air->scattering == AirScattering::traced)
-    if (const auto sentence = open_below(written, scene, job)) said.push_back(*sentence);
+    if (const auto sentence = open_below(written, scene, sensors, job)) said.push_back(*sentence);
   if (written.air->scattering != AirScattering::diffuse) return said;
   SourceSpecs first = written;
   resolve_sources(first, scene);
