@@ -5,9 +5,10 @@
 
 namespace suite {
 
-// Sentences, none where nothing matters, or where the air is not solved for an even ground, but for the first three:
+// Sentences, none where nothing matters, or where the air is not solved for an even ground, but for the first four:
 // - the quick atmosphere scatters light once: how much is missing (scattered_once.h);
 // - bands lie where the gases' tables are less sure than in general (air/gas_limits.h);
+// - a sensor looks from within haze: how far its sunlit light is from another program's (air/ACCURACY.md);
 // - air that is traced goes on below a scene that ends, and how bright that makes the horizon (glow_from_below);
 // - beyond the scene the even ground goes on, unless there is an Earth, a surface without end or a scene that repeats
 //   itself, or little of the ground's light comes from there (kMostFromBeyond);

@@ -56,8 +56,9 @@ std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s
     said.push_back(of(s.unresolved.problems) +
                    "are not resolved: light of small sources behind smooth refracting surfaces was not found, " +
                    share(s, s.unresolved) +
-                   "; their standard errors contain it. A wider disk of the sun, lamps with a surface, rough surfaces "
-                   "or more paths help");
+                   ", estimated along straight lines, as flat surfaces would let it pass; where curved surfaces or "
+                   "mirrors throw light together, up to all of it. Their standard errors contain the estimate. A wider "
+                   "disk of the sun, lamps with a surface, rough surfaces or more paths help");
   if (tells(s, s.truncated, Lack::kCut))
     said.push_back(of(s.truncated.problems) + "lost light that was cut at the maximum number of nodes, " +
                    share(s, s.truncated) + "; their standard errors contain it. More max_nodes help");
@@ -122,8 +123,8 @@ std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sourc
         "or flag tells of it");
   if (!mirrors.empty() && !unguided.empty())
     said.push_back("light of " + listed(unguided) + " that smooth surfaces (" + listed(mirrors) +
-                   ") reflect to others is not found and not estimated: no standard error and no flag tells of it. A "
-                   "rough surface (ggx) or a wider source is found");
+                   ") reflect to others is not found and not estimated, up to all of what is seen there: no standard error "
+                   "and no flag tells of it. A rough surface (ggx) or a wider source is found");
   return said;
 }
 

@@ -54,7 +54,9 @@ struct Shortfall {
 Shortfall shortfall_of(std::span<const Lack> problems);
 
 // One sentence about each thing that a sensor's results lack: how many problems, how much, what helps. Also where no
-// problem is flagged for its noise, but the mean of all lacks as much as flags one.
+// problem is flagged for its noise, but the mean of all lacks as much as flags one. Light that was not found is known
+// along straight lines only (transport/lost_light.h): what curved surfaces and mirrors throw together is more, by no
+// known factor, and the sentence says so.
 std::vector<std::string> sentences(const std::string& sensor, const Shortfall& shortfall);
 
 // What is said of paths that left bodies of media where they have no surface, as out of a sheet of water that ends in

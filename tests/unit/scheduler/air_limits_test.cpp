@@ -69,6 +69,20 @@ TEST(AirLimits, TheGroundBeyondTheScene) {
   EXPECT_THAT(Told{.air = traced}.said(), Contains(HasSubstr("nothing ends the lowest air")));
 }
 
+TEST(AirLimits, ViewsFromWithinHaze) {
+  AirSpec hazy;
+  hazy.aerosol = AirSpec::Aerosol{};
+  const auto said = [&](double height, double um) {
+    return Told{.half_width = 3e5, .from = {0, 0, height}, .um = um, .air = hazy}.said();
+  };
+  EXPECT_THAT(said(2, 0.55), Contains(AllOf(HasSubstr("'rays' look from within haze of 'rural' particles"),
+                                            HasSubstr("up to 37 % on level ways"))));
+  EXPECT_THAT(said(7e5, 0.55), IsEmpty());
+  EXPECT_THAT(said(2, 2.2), IsEmpty());
+  hazy.aerosol->boundary.name = "desert";
+  EXPECT_THAT(said(2, 0.55), IsEmpty());
+}
+
 // Runs with and without `earth`, 65536 paths for the sun at 92 degrees and 8192 else, 2 degrees over the horizon away
 // from the sun or to its side, as glow_from_below says: what differed, the standard error taken off.
 TEST(AirLimits, OpenAirIsNoBrighterThanReported) {
