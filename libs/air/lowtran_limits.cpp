@@ -3,9 +3,15 @@
 namespace suite {
 
 std::vector<GasLimit> limits_of_lowtran(WaterOf continuum) {
-  const GasLimit foot{14.0, 18.7, {0, 0}, 0, {3.4, 7}, {0, 0},
-                      "carbon dioxide, water; measured without water: 1.7 K rms, 3 K at most; the rest is an allowance for "
-                      "water, not measured, nor are slanted paths"};
+  const GasLimit foot{
+      14.0,
+      18.7,
+      {0, 0},
+      0,
+      {3.4, 7},
+      {0, 0},
+      "carbon dioxide, water; measured without water: 1.7 K rms, 3 K at most; the rest is an allowance for "
+      "water, not measured, nor are slanted paths"};
   if (continuum == WaterOf::mt_ckd)
     return {{1.1, 1.35, {0.022, 0.092}, 0.004, {}, {}, "water, oxygen"},
             {2.0, 2.4, {0.034, 0.12}, -0.025, {}, {}, "water, methane"},

@@ -29,8 +29,8 @@ void bake_layer(const AtmosphereSpec& s, const SpectralState& state, size_t l, L
     const double rayleigh = s.rayleigh ? rayleigh_depth(w, weight * s.pressure / 101325) : 0;
     double aerosol = 0, absorbed = 0;
     if (const auto& a = s.aerosol) {
-      const double depth = a->depth_550 * std::pow(w / 0.55, -a->angstrom) *
-                           exponential_share(low, high, bottom, top, a->scale_height);
+      const double depth =
+          a->depth_550 * std::pow(w / 0.55, -a->angstrom) * exponential_share(low, high, bottom, top, a->scale_height);
       aerosol = depth * a->albedo.mean(b.low_um, b.high_um);
       absorbed = depth - aerosol;
     }

@@ -126,9 +126,8 @@ ScatteredAgain scattered_again(const AtmosphereSpec& spec, const SpectralState& 
 
   std::vector<float> T(state.size()), S(state.size());
   const double ground =
-      ground_albedo > 0
-          ? ground_albedo / kPi * on_ground(*lit, *dark, beam, {from.x, from.y, column.ground()}, T, S)
-          : 0;
+      ground_albedo > 0 ? ground_albedo / kPi * on_ground(*lit, *dark, beam, {from.x, from.y, column.ground()}, T, S)
+                        : 0;
   dark->path(from, d, distance, T, S);
   light.once = -first_of(S);
   lit->path(from, d, distance, T, S);

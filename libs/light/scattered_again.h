@@ -23,8 +23,8 @@ struct AirView {
   Dir towards;
 };
 
-// From a place at or above the scene's z = 0, where the ground lies. ground_albedo: 0..1. Nothing (zeros) where the beam
-// comes from below or the view meets no air. Error: as make_layered_atmosphere and DiscreteOrdinates.
+// From a place at or above the scene's z = 0, where the ground lies. ground_albedo: 0..1. Nothing (zeros) where the
+// beam comes from below or the view meets no air. Error: as make_layered_atmosphere and DiscreteOrdinates.
 ScatteredAgain scattered_again(const AtmosphereSpec& spec, const SpectralState& state, const Beam& beam,
                                const AirView& view, double ground_albedo);
 

@@ -71,7 +71,8 @@ std::optional<std::string> open_below(const SourceSpecs& written, const Scene& s
   const Lowest body = lowest_body(written, scene, sensors);
   std::string text = strf(
       "air: the scene reaches %.3g km from its middle; beyond it nothing ends the lowest air, which goes on downwards "
-      "and sends light back as a bright ground would: over a dark scene up to %.2g %% of what is seen near the horizon, "
+      "and sends light back as a bright ground would: over a dark scene up to %.2g %% of what is seen near the "
+      "horizon, "
       "a third of that in the zenith (0.55 um, visibility 23 km)",
       reach * 1e-3, 100 * glow_from_below(reach, body.zenith));
   if (body.zenith > kMeasuredTwilight)
@@ -164,7 +165,8 @@ std::optional<std::string> within_haze(const AirSpec& air, Sensors sensors) {
     if (sensor->tasks().empty() || sensor->tasks()[0].captures.empty()) continue;
     const Capture& c = sensor->tasks()[0].captures[0];
     const auto bands = sensor->bands(c.state);
-    if (!std::any_of(bands.begin(), bands.end(), [](const Band& b) { return b.center_um > kLow && b.center_um < kHigh; }))
+    if (!std::any_of(bands.begin(), bands.end(),
+                     [](const Band& b) { return b.center_um > kLow && b.center_um < kHigh; }))
       continue;
     const SensorRay ray = middle_ray(*sensor, c, (c.rows / 2) * c.columns + c.columns / 2);
     if (ray.ray.origin.z - ground < kBoundary) names += (names.empty() ? "'" : ", '") + sensor->name() + "'";
@@ -173,7 +175,8 @@ std::optional<std::string> within_haze(const AirSpec& air, Sensors sensors) {
   return "air: " + names + " look from within haze of '" + air.aerosol->boundary.name +
          "' particles, whose light differs from MODTRAN's: scattered once by up to 12 % (rural, 0.55 um), whose stored "
          "phase functions are means of several models; in its runs with azimuths averaged (no DISAZM) the haze is "
-         "brighter by up to 37 % on level ways at the ground (0.4 to 0.7 um, visibility 23 km; 52 % for 5 km), 2 % from "
+         "brighter by up to 37 % on level ways at the ground (0.4 to 0.7 um, visibility 23 km; 52 % for 5 km), 2 % "
+         "from "
          "24 km";
 }
 

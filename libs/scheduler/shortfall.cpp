@@ -122,9 +122,10 @@ std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sourc
         "surfaces without bounds, and of small ones among many, do not reach is left to chance, and no standard error "
         "or flag tells of it");
   if (!mirrors.empty() && !unguided.empty())
-    said.push_back("light of " + listed(unguided) + " that smooth surfaces (" + listed(mirrors) +
-                   ") reflect to others is not found and not estimated, up to all of what is seen there: no standard error "
-                   "and no flag tells of it. A rough surface (ggx) or a wider source is found");
+    said.push_back(
+        "light of " + listed(unguided) + " that smooth surfaces (" + listed(mirrors) +
+        ") reflect to others is not found and not estimated, up to all of what is seen there: no standard error "
+        "and no flag tells of it. A rough surface (ggx) or a wider source is found");
   return said;
 }
 

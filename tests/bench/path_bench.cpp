@@ -1,14 +1,14 @@
 // Transmittance and radiance of builtin air along paths, to be held against other programs (tests/bench/air_paths).
 //
-// path_bench [CONTINUUM] reads lines "altitude range visibility" from standard input (km: of the sensor above sea level,
-// along the ground to the target at sea level, of the rural aerosol) and prints, after a line with the path's number, a
-// line "wavelength transmittance radiance" (um, 1, W/(m2 sr um)) every 0.01 um from 0.3 to 14 um: means over 0.01 um in
-// midlatitude summer, without the sun. CONTINUUM: of water, a file of MT_CKD in place of the builtin one.
+// path_bench [CONTINUUM] reads lines "altitude range visibility" from standard input (km: of the sensor above sea
+// level, along the ground to the target at sea level, of the rural aerosol) and prints, after a line with the path's
+// number, a line "wavelength transmittance radiance" (um, 1, W/(m2 sr um)) every 0.01 um from 0.3 to 14 um: means over
+// 0.01 um in midlatitude summer, without the sun. CONTINUUM: of water, a file of MT_CKD in place of the builtin one.
 // path_bench --sun prints "wavelength radiance all_round" from 0.4 to 0.7 um in place of that: of the sun at 50 degrees
-// from the zenith on August 23rd, 90 degrees beside the line of sight, over a mixed forest; all_round with the light that
-// is scattered more than once as it is in the mean over azimuths.
-// path_bench --limits [CONTINUUM] prints the limits that the gases report, one a line: low, high (um); rms and largest
-// error of transmittance, of brightness straight down and slanted (K); 0 = none.
+// from the zenith on August 23rd, 90 degrees beside the line of sight, over a mixed forest; all_round with the light
+// that is scattered more than once as it is in the mean over azimuths. path_bench --limits [CONTINUUM] prints the
+// limits that the gases report, one a line: low, high (um); rms and largest error of transmittance, of brightness
+// straight down and slanted (K); 0 = none.
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -63,7 +63,8 @@ Sight sight(double radius, double altitude, double range) {
 using Columns = std::vector<std::vector<double>>;
 
 // Prints what `along` gives for each line; `begin` is called where another visibility begins.
-void each_path(double low, const std::function<void(double)>& begin, const std::function<Columns(double, double)>& along) {
+void each_path(double low, const std::function<void(double)>& begin,
+               const std::function<Columns(double, double)>& along) {
   double altitude = 0, range = 0, visibility = 0, made_for = 0;
   for (int number = 0; std::scanf("%lf %lf %lf", &altitude, &range, &visibility) == 3; ++number) {
     if (visibility != made_for) begin(made_for = visibility);

@@ -84,10 +84,10 @@ TEST(Aerosols, AreThePublishedOnes) {
   }
 }
 
-// LOWTRAN 7 and MODTRAN take light that is scattered once from 70 stored functions (block data PHSDTA), each a mean over
-// models, humidities and wavelengths: rural of 0 and 70 % from 0.55 to 1.06 um share PHSF4, of 80 % takes PHSF5. Ours
-// have the asymmetry published for the model, which PHSF4, with 0.642, has not; PHSF5, with 0.701, has it, and ours is
-// that function.
+// LOWTRAN 7 and MODTRAN take light that is scattered once from 70 stored functions (block data PHSDTA), each a mean
+// over models, humidities and wavelengths: rural of 0 and 70 % from 0.55 to 1.06 um share PHSF4, of 80 % takes PHSF5.
+// Ours have the asymmetry published for the model, which PHSF4, with 0.642, has not; PHSF5, with 0.701, has it, and
+// ours is that function.
 TEST(Aerosols, RuralPhaseFunctionIsThatOfLowtranWhereThatHasThePublishedAsymmetry) {
   struct Stored {
     double humidity, published, within;  // RURG2, RURG3 at 0.55 um

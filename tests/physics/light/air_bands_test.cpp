@@ -141,8 +141,8 @@ TEST(AirBands, ThermalWindowsOfDryAir) {
 }
 
 // The range that gases report as unsure beyond 14 um, by REPTRAN as above, from 535 to 715 cm-1 without water: 1.65 K
-// rms, 2.95 K at most (2.22 and 2.95 K from 16 to 18 um); within what is reported, which allows for water, too, and says
-// that this part is not measured.
+// rms, 2.95 K at most (2.22 and 2.95 K from 16 to 18 um); within what is reported, which allows for water, too, and
+// says that this part is not measured.
 TEST(AirBands, FootOfCarbonDioxideIsWithinItsReportedLimit) {
   const std::vector<double> reptran = {298.50, 283.96, 250.41, 224.03, 225.47, 227.36};
   const std::vector<double> ours = brightness({Gas::co2, Gas::o3, Gas::ch4, Gas::n2o}, 535, reptran.size());
@@ -162,9 +162,9 @@ TEST(AirBands, FootOfCarbonDioxideIsWithinItsReportedLimit) {
   EXPECT_GT(2.5 * most, limit.kelvin_down.most) << "a report of any size would pass";
 }
 
-// The worst of MODTRAN 5.2.1's paths (pybsm 0.16.1, Apache-2.0, atms/1874.bin and 3197.bin; tests/bench/air_paths/compare)
-// that go down with a cosine of about 0.2: midlatitude summer, rural aerosol of 5 km, over a target of 299 K. The limit of
-// slanted paths holds; that of paths straight down does not.
+// The worst of MODTRAN 5.2.1's paths (pybsm 0.16.1, Apache-2.0, atms/1874.bin and 3197.bin;
+// tests/bench/air_paths/compare) that go down with a cosine of about 0.2: midlatitude summer, rural aerosol of 5 km,
+// over a target of 299 K. The limit of slanted paths holds; that of paths straight down does not.
 TEST(AirBands, SlantedPathsKeepWithinTheirReportedLimit) {
   struct Path {
     double height, range, low_um, high_um, modtran;  // m; K over the interval

@@ -89,9 +89,15 @@ TEST(AirLimits, OpenAirIsNoBrighterThanReported) {
   struct Run {
     double reach, sun_deg, brighter;
   };
-  for (const Run& r : {Run{2e3, 80, 0.482 - 0.028}, {2e3, 88, 0.472 - 0.039}, {2e3, 92, 0.697 - 0.109},
-                       {15e3, 80, 0.133 - 0.026}, {15e3, 85, 0.131 - 0.034}, {15e3, 88, 0.148 - 0.041},
-                       {15e3, 90, 0.152 - 0.062}, {15e3, 92, 0.172 - 0.049}, {50e3, 80, 0.034 - 0.023},
+  for (const Run& r : {Run{2e3, 80, 0.482 - 0.028},
+                       {2e3, 88, 0.472 - 0.039},
+                       {2e3, 92, 0.697 - 0.109},
+                       {15e3, 80, 0.133 - 0.026},
+                       {15e3, 85, 0.131 - 0.034},
+                       {15e3, 88, 0.148 - 0.041},
+                       {15e3, 90, 0.152 - 0.062},
+                       {15e3, 92, 0.172 - 0.049},
+                       {50e3, 80, 0.034 - 0.023},
                        {50e3, 88, 0.063 - 0.041}}) {
     const double reported = glow_from_below(r.reach, r.sun_deg * kDegree);
     EXPECT_GT(reported, r.brighter) << r.reach << " " << r.sun_deg;
