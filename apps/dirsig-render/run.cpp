@@ -246,7 +246,7 @@ void check_usage(const Cli& cli, const RenderOptions& o, const Ranks* ranks) {
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
 }
 
-// Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
+// Reports what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
 void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
     for (const Task& task : sim.sensors[s]->tasks())

@@ -81,6 +81,10 @@ constexpr std::array kKinds = std::to_array<DiagnosticKind>({
     {Dr::low_sun, kInfo, "sun or moon are so low that multiple scattering is less exact", "use `scattering: traced`"},
     {Dr::limb_low_sun, kInfo, "a sensor looks along the limb under a sun lower than was validated",
      "use `scattering: traced`"},
+    {Dr::scattered_once, kWarning, "the atmosphere without a profile scatters once: light scattered again is missing",
+     "use an atmosphere with a `profile`"},
+    {Dr::within_haze, kInfo, "a sensor looks from within haze, where particle models differ",
+     "allow for the stated difference, or give particles of your own"},
     // Spectral bins.
     {Dr::bins_through_gases, kWarning, "bands miss their spectral_error through the gases",
      "leave out spectral_step_um or reduce it; the errors include the bias"},

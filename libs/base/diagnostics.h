@@ -46,6 +46,8 @@ enum class Dr : int {
   adjacency_beside_media = 405,
   low_sun = 406,
   limb_low_sun = 407,
+  scattered_once = 408,
+  within_haze = 409,
   bins_through_gases = 501,
   bins = 502,
   heat_paths = 601,

@@ -5,18 +5,12 @@
 #include <limits>
 
 #include "air/molecules.h"
+#include "light/layer_optics.h"
 #include "optics/phase_function.h"
-#include "spectral/planck.h"
 
 namespace suite {
 
 namespace {
-
-// Share of an exponential profile that lies between two heights.
-double exponential_share(double low, double high, double bottom, double top, double scale) {
-  const auto mass = [&](double z) { return -std::expm1(-(z - bottom) / scale); };
-  return (mass(high) - mass(low)) / mass(top);
-}
 
 class Layered final : public Atmosphere {
  public:
@@ -27,11 +21,11 @@ class Layered final : public Atmosphere {
         bins_(state.size()),
         beams_(std::move(beams)) {
     layers_ = heights_.size() - 1;
-    const size_t n = layers_ * bins_;
-    extinction_.assign(n, 0), rayleigh_.assign(n, 0), aerosol_.assign(n, 0), source_.assign(n, 0),
-        above_.assign((layers_ + 1) * bins_, 0);
+    above_.assign((layers_ + 1) * bins_, 0);
     if (s.aerosol) phase_ = bake_phase(s.aerosol->phase, state);
-    for (size_t l = 0; l < layers_; ++l) bake_layer(s, state, l);
+    LayerOptics baked = bake_layers(s, state);
+    extinction_ = std::move(baked.extinction), rayleigh_ = std::move(baked.rayleigh);
+    aerosol_ = std::move(baked.aerosol), source_ = std::move(baked.source);
     for (size_t l = layers_; l-- > 0;)
       for (size_t i = 0; i < bins_; ++i)
         above_[l * bins_ + i] = above_[(l + 1) * bins_ + i] +
@@ -129,40 +123,6 @@ class Layered final : public Atmosphere {
       if (g.layers.empty() && g.column.min() < 0) throw Error("gas '" + g.name + "' has a negative optical depth");
     }
     return s;
-  }
-
-  void bake_layer(const AtmosphereSpec& s, const SpectralState& state, size_t l) {
-    const double low = s.heights[l], high = s.heights[l + 1], bottom = s.heights.front(), top = s.heights.back(),
-                 thickness = high - low;
-    // The weight of the air in a layer is the difference of the pressures at its bounds; the top layer carries the
-    // rest.
-    const double weight = standard_air(low).pressure - (l + 1 == layers_ ? 0 : standard_air(high).pressure);
-    const double temperature =
-        s.temperature_k.empty() ? standard_air(0.5 * (low + high)).temperature : s.temperature_k[l];
-    for (size_t i = 0; i < bins_; ++i) {
-      const Bin& b = state.bins[i];
-      const double w = b.center_um();
-      const double rayleigh = s.rayleigh ? rayleigh_depth(w, weight * s.pressure / 101325) : 0;
-      double aerosol = 0, absorbed = 0;
-      if (const auto& a = s.aerosol) {
-        const double depth = a->depth_550 * std::pow(w / 0.55, -a->angstrom) *
-                             exponential_share(low, high, bottom, top, a->scale_height);
-        aerosol = depth * a->albedo.mean(b.low_um, b.high_um);
-        absorbed = depth - aerosol;
-      }
-      for (const AtmosphereSpec::Gas& g : s.gases)
-        absorbed += g.layers.empty()
-                        ? g.column.mean(b.low_um, b.high_um) * exponential_share(low, high, bottom, top, g.scale_height)
-                        : g.layers[l].mean(b.low_um, b.high_um);
-      const double extinction = rayleigh + aerosol + absorbed;
-      const size_t k = l * bins_ + i;
-      extinction_[k] = static_cast<float>(extinction / thickness);
-      rayleigh_[k] = static_cast<float>(rayleigh / thickness);
-      aerosol_[k] = static_cast<float>(aerosol / thickness);
-      if (absorbed > 0)
-        source_[k] = static_cast<float>(absorbed / extinction * planck_band_radiance(b.low_um, b.high_um, temperature) /
-                                        (b.high_um - b.low_um));
-    }
   }
 
   // Calls visit(layer, height at the near end, length) for the pieces of a segment, from `from` on.

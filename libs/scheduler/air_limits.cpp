@@ -6,11 +6,14 @@
 #include "scene/primitives.h"
 #include "scheduler/air_left_out.h"
 #include "scheduler/moments.h"
+#include "scheduler/scattered_once.h"
 #include "scheduler/sensor_diagnostics.h"
 
 namespace suite {
 
 namespace {
+
+constexpr double kMeasuredTwilight = 92.05 * kDegree;  // zenith angle of the lowest sun of glow_from_below
 
 bool endless(const Scene& scene) {
   return scene.bounds.empty() || std::any_of(scene.primitives.begin(), scene.primitives.end(),
@@ -35,21 +38,6 @@ std::optional<std::string> beyond(const AirSpec& air, const SourceSpecs& written
       reach * 1e-3, even_ground(air).c_str(), 100 * share);
 }
 
-// Traced air goes on below where no matter ends it.
-std::optional<std::string> open_below(const SourceSpecs& written, const Scene& scene, const JobOptions& job) {
-  if (written.earth || job.periodic || endless(scene)) return std::nullopt;
-  const Vec3 size = scene.bounds.size();
-  const double reach = 0.5 * std::min(size.x, size.y);
-  if (share_from_beyond(reach) < kMostFromBeyond) return std::nullopt;
-  return strf(
-      "air: the scene reaches %.3g km from its middle; beyond it nothing ends the lowest air, which goes on downwards "
-      "and "
-      "sends light back as a bright ground would (5 %% of a hazy horizon under a low sun, round a dark scene that "
-      "reaches "
-      "15 km): lay `earth` or a plane without end under it",
-      reach * 1e-3);
-}
-
 // The lowest of sun and moon over all captures: degrees from the zenith.
 struct Lowest {
   double zenith = 0;
@@ -71,6 +59,26 @@ Lowest lowest_body(const SourceSpecs& written, const Scene& scene, Sensors senso
             if (zenith > lowest.zenith) lowest = {zenith, light->key()};
           }
   return lowest;
+}
+
+// Traced air goes on below where no matter ends it.
+std::optional<std::string> open_below(const SourceSpecs& written, const Scene& scene, Sensors sensors,
+                                      const JobOptions& job) {
+  if (written.earth || job.periodic || endless(scene)) return std::nullopt;
+  const Vec3 size = scene.bounds.size();
+  const double reach = 0.5 * std::min(size.x, size.y);
+  if (share_from_beyond(reach) < kMostFromBeyond) return std::nullopt;
+  const Lowest body = lowest_body(written, scene, sensors);
+  std::string text = strf(
+      "air: the scene reaches %.3g km from its middle; beyond it nothing ends the lowest air, which goes on downwards "
+      "and sends light back as a bright ground would: over a dark scene up to %.2g %% of what is seen near the "
+      "horizon, "
+      "a third of that in the zenith (0.55 um, visibility 23 km)",
+      reach * 1e-3, 100 * glow_from_below(reach, body.zenith));
+  if (body.zenith > kMeasuredTwilight)
+    text += strf("; with the %s at %.3g degrees from the zenith, lower than 92, it may be all of it", body.body.c_str(),
+                 body.zenith / kDegree);
+  return text + ": lay `earth` or a plane without end under it";
 }
 
 // Light that is scattered more than once, seen from space against another program
@@ -147,6 +155,31 @@ void report_gas_limits(const GasProvider& gases, Sensors sensors, std::vector<Di
   }
 }
 
+// Sensors that look from within the haze of the ground where particles scatter most.
+std::optional<std::string> within_haze(const AirSpec& air, Sensors sensors) {
+  constexpr double kBoundary = 2000, kLow = 0.35, kHigh = 1.1;  // m, um
+  if (!air.aerosol || air.aerosol->boundary.data || air.aerosol->boundary.name == "desert") return std::nullopt;
+  const double ground = air.height_of_ground() - air.height_of_scene();
+  std::string names;
+  for (const auto& sensor : sensors) {
+    if (sensor->tasks().empty() || sensor->tasks()[0].captures.empty()) continue;
+    const Capture& c = sensor->tasks()[0].captures[0];
+    const auto bands = sensor->bands(c.state);
+    if (!std::any_of(bands.begin(), bands.end(),
+                     [](const Band& b) { return b.center_um > kLow && b.center_um < kHigh; }))
+      continue;
+    const SensorRay ray = middle_ray(*sensor, c, (c.rows / 2) * c.columns + c.columns / 2);
+    if (ray.ray.origin.z - ground < kBoundary) names += (names.empty() ? "'" : ", '") + sensor->name() + "'";
+  }
+  if (names.empty()) return std::nullopt;
+  return "air: " + names + " look from within haze of '" + air.aerosol->boundary.name +
+         "' particles, whose light differs from MODTRAN's: scattered once by up to 12 % (rural, 0.55 um), whose stored "
+         "phase functions are means of several models; in its runs with azimuths averaged (no DISAZM) the haze is "
+         "brighter by up to 37 % on level ways at the ground (0.4 to 0.7 um, visibility 23 km; 52 % for 5 km), 2 % "
+         "from "
+         "24 km";
+}
+
 constexpr double kLowLimb = 85 * kDegree;
 
 bool sees_sunlight(const Sensor& sensor) {
@@ -187,13 +220,23 @@ double share_from_beyond(double reach, double scale) {
   return sum / kParts;
 }
 
+double glow_from_below(double reach, double sun) {
+  constexpr double kHaze = 2000;  // m: scale height of what the horizon's light is scattered by
+  constexpr double kUp = 1.3, kDown = 1.6;
+  return std::min(1.0, (sun > 0.5 * kPi ? kDown : kUp) * share_from_beyond(reach, kHaze));
+}
+
 std::vector<Diagnostic> diagnose_air(const SourceSpecs& written, const Scene& scene, Sensors sensors,
                                      const JobOptions& job) {
+  if (written.atmosphere) return diagnose_scattered_once(written, scene, sensors);
   std::vector<Diagnostic> found;
   if (!written.air) return found;
   if (written.air->gases) report_gas_limits(*written.air->gases, sensors, found);
+  if (written.sun())
+    if (const auto sentence = within_haze(*written.air, sensors)) found.push_back({Dr::within_haze, *sentence});
   if (written.air->scattering == AirScattering::traced)
-    if (const auto sentence = open_below(written, scene, job)) found.push_back({Dr::air_open_below, *sentence});
+    if (const auto sentence = open_below(written, scene, sensors, job))
+      found.push_back({Dr::air_open_below, *sentence});
   if (written.air->scattering != AirScattering::diffuse) return found;
   SourceSpecs first = written;
   resolve_sources(first, scene);

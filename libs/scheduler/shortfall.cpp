@@ -57,8 +57,9 @@ std::vector<Diagnostic> diagnose_shortfall(const std::string& sensor, const Shor
                      of(s.unresolved.problems) +
                          "are not resolved: light of small sources behind smooth refracting surfaces was not found, " +
                          share(s, s.unresolved) +
-                         "; their standard errors contain it. A wider disk of the sun, lamps with a surface, rough "
-                         "surfaces or more paths help"});
+                         ", estimated along straight lines, as flat surfaces would let it pass; where curved surfaces "
+                         "or mirrors focus light, up to all of it. Their standard errors contain the estimate. A wider "
+                         "disk of the sun, lamps with a surface, rough surfaces or more paths help"});
   if (reports(s, s.truncated, Lack::kCut))
     found.push_back({Dr::truncated_paths, of(s.truncated.problems) +
                                               "lost light of paths that were truncated at the maximum number of "
@@ -145,8 +146,8 @@ std::vector<Diagnostic> diagnose_lost_light(const Scene& scene, const SourceSpec
   if (!mirrors.empty() && !lights.unguided.empty())
     found.push_back({Dr::caustics_not_found,
                      "caustics: light of " + listed(lights.unguided) + " that smooth surfaces (" + listed(mirrors) +
-                         ") reflect to others is not found and not estimated: no standard error and no flag contains "
-                         "it. A rough surface (ggx) or a wider source is found"});
+                         ") reflect to others is not found and not estimated, up to all of what is seen there: no "
+                         "standard error and no flag contains it. A rough surface (ggx) or a wider source is found"});
   return found;
 }
 

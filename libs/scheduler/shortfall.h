@@ -57,7 +57,9 @@ struct Shortfall {
 Shortfall shortfall_of(std::span<const Lack> problems);
 
 // One diagnostic for each thing that a sensor's results lack: how many problems, how much, what helps. Also where no
-// problem is flagged for its noise, but the mean of all lacks as much as flags one.
+// problem is flagged for its noise, but the mean of all lacks as much as flags one. Light that was not found is known
+// along straight lines only (transport/lost_light.h): what curved surfaces and mirrors focus is more, by no known
+// factor, and the text says so.
 std::vector<Diagnostic> diagnose_shortfall(const std::string& sensor, const Shortfall& shortfall);
 
 // Paths that leaked out of bodies of media where these have no boundary, as out of a sheet of water that ends in the

@@ -72,6 +72,69 @@ TEST(AirLimits, TheGroundBeyondTheScene) {
               Contains(AllOf(HasSubstr("nothing ends the lowest air"), HasSubstr("[DR402]"))));
 }
 
+TEST(AirLimits, ViewsFromWithinHaze) {
+  AirSpec hazy;
+  hazy.aerosol = AirSpec::Aerosol{};
+  const auto said = [&](double height, double um) {
+    return Told{.half_width = 3e5, .from = {0, 0, height}, .um = um, .air = hazy}.said();
+  };
+  EXPECT_THAT(said(2, 0.55), Contains(AllOf(HasSubstr("'rays' look from within haze of 'rural' particles"),
+                                            HasSubstr("up to 37 % on level ways"), HasSubstr("[DR409]"))));
+  EXPECT_THAT(said(7e5, 0.55), IsEmpty());
+  EXPECT_THAT(said(2, 2.2), IsEmpty());
+  hazy.aerosol->boundary.name = "desert";
+  EXPECT_THAT(said(2, 0.55), IsEmpty());
+}
+
+// Runs with and without `earth`, 65536 paths for the sun at 92 degrees and 8192 else, 2 degrees over the horizon away
+// from the sun or to its side, as glow_from_below says: what differed, the standard error taken off.
+TEST(AirLimits, OpenAirIsNoBrighterThanReported) {
+  struct Run {
+    double reach, sun_deg, brighter;
+  };
+  for (const Run& r : {Run{2e3, 80, 0.482 - 0.028},
+                       {2e3, 88, 0.472 - 0.039},
+                       {2e3, 92, 0.697 - 0.109},
+                       {15e3, 80, 0.133 - 0.026},
+                       {15e3, 85, 0.131 - 0.034},
+                       {15e3, 88, 0.148 - 0.041},
+                       {15e3, 90, 0.152 - 0.062},
+                       {15e3, 92, 0.172 - 0.049},
+                       {50e3, 80, 0.034 - 0.023},
+                       {50e3, 88, 0.063 - 0.041}}) {
+    const double reported = glow_from_below(r.reach, r.sun_deg * kDegree);
+    EXPECT_GT(reported, r.brighter) << r.reach << " " << r.sun_deg;
+    EXPECT_LT(reported, 2.5 * r.brighter + 0.03) << "a report of any size would pass";
+  }
+  AirSpec traced;
+  traced.scattering = AirScattering::traced;
+  const auto said = [&](double sun_deg) {
+    return Told{.half_width = 15e3, .sun_zenith_deg = sun_deg, .air = traced}.said();
+  };
+  EXPECT_THAT(said(80), Contains(HasSubstr("up to 17 % of what is seen near the horizon")));
+  EXPECT_THAT(said(92), Contains(HasSubstr("up to 20 % of what is seen near the horizon")));
+  EXPECT_THAT(said(92), Not(Contains(HasSubstr("all of it"))));
+  EXPECT_THAT(said(95), Contains(HasSubstr("it may be all of it")));
+}
+
+// Shares by light/scattered_again.h, which is held to walks of photons.
+TEST(AirLimits, WhatIsScatteredAgainIsToldOfTheQuickAtmosphere) {
+  const auto told = [](double um, double sun_deg) {
+    SourceSpecs sources;
+    sources.atmosphere.emplace();
+    sources.add(SunSpec{{dir_from_angles(sun_deg * kDegree, 0), 0, Curve::constant(1)}});
+    auto scene = test::scene_of({test::quad(1e3, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+    std::vector<std::unique_ptr<Sensor>> sensors;
+    sensors.push_back(std::make_unique<test::RaySensor>(std::vector<Ray>{{{0, 0, 7e5}, {0, 0, -1}, 0}},
+                                                        std::vector<Band>{Band::rectangular("b", um, 0.01)}, 4));
+    return lines_of(diagnose_air(sources, *scene, sensors, {}));
+  };
+  EXPECT_THAT(told(0.45, 30), Contains(AllOf(HasSubstr("sensor 'rays' lacks what is scattered again"),
+                                             HasSubstr("20 % of band 'b' over a black ground"), HasSubstr("[DR408]"))));
+  EXPECT_THAT(told(2.2, 30), IsEmpty());   // less than 1 %
+  EXPECT_THAT(told(0.45, 95), IsEmpty());  // the sun has set
+}
+
 TEST(AirLimits, EstimatorsThatDoNotGoBack) {
   JobOptions paper, blind;
   paper.pipeline.method = Method::paper, blind.pipeline.explicit_sources = false;
