@@ -134,8 +134,8 @@ function(_suite_test_name place name label)
 endfunction()
 
 # suite_entry(<name> COMMAND ... [LABEL l] [TIMEOUT s] [PASS regex] [ENVIRONMENT ...]): one ctest entry, measured. Its label is that of
-# the folder, its time-out follows from tests/seconds.tsv. A name that the table does not hold has SUITE_UNKNOWN_TIMEOUT
-# seconds, and the test seconds_table says which line to add. TIMEOUT is for what the table does not hold: the long runs.
+# the folder, the seconds after which it is ended follow from tests/seconds.tsv. A name that the table does not hold has
+# SUITE_UNKNOWN_TIMEOUT of them, and the test seconds_table says which line to add. TIMEOUT is for the long runs.
 function(suite_entry name)
   cmake_parse_arguments(A "" "LABEL;TIMEOUT;PASS" "COMMAND;ENVIRONMENT" ${ARGN})
   if(NOT A_COMMAND OR A_UNPARSED_ARGUMENTS)
@@ -144,17 +144,19 @@ function(suite_entry name)
   if(NOT A_LABEL)
     get_filename_component(A_LABEL ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   endif()
+  set(processor unlimited)
   if(NOT A_TIMEOUT)
     set(A_TIMEOUT ${SUITE_UNKNOWN_TIMEOUT})
     if(DEFINED SUITE_TIMEOUT_${name})
       set(A_TIMEOUT ${SUITE_TIMEOUT_${name}})
+      set(processor ${SUITE_PROCESSOR_${name}})
     endif()
   endif()
   set(labels ${A_LABEL})
   if("${name}" IN_LIST SUITE_QUICK)
     list(APPEND labels quick)
   endif()
-  add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/tests/support/measured ${A_COMMAND})
+  add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/tests/support/measured ${processor} ${A_COMMAND})
   set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${A_TIMEOUT})
   if(A_PASS)
     set_tests_properties(${name} PROPERTIES PASS_REGULAR_EXPRESSION "${A_PASS}")
