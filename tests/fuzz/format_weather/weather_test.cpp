@@ -74,7 +74,7 @@ TEST(WeatherFuzz, Csv) {
   fuzz(
       "site: 39.83 -104.65 1650\nutc_offset: -7\nstamps: begin\n"
       "time_local, air_temperature [C], dew_point mean [K], wind_from [deg], global [W/m2], cloud_cover [%]\n"
-      "2020-01-01T01:00, -5, 260, 0, 10\n2020-01-01T02:00, -6, , 90, 0, 20\n2020-01-01T03:00, -7, 262, 0, 30\n",
+      "2020-01-01T01:00, -5, 260, 0, 0, 10\n2020-01-01T02:00, -6, , 90, 0, 20\n2020-01-01T03:00, -7, 262, 350, 0, 30\n",
       26,
       {"time_utc", "[K]", "[%]", "2199-12-31T23:00", "1972-01-01", "site:", "utc_offset: 14", "end", "nan", "1e300",
        ",", "#"});
