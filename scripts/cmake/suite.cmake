@@ -206,8 +206,8 @@ function(suite_test_long place)
   suite_entry(${name}_long LABEL long TIMEOUT ${A_SECONDS} COMMAND $<TARGET_FILE:${name}> ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
 endfunction()
 
-# suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader, so many an input (tests/support/fuzz.h) in
-# the default run, and a campaign of 30 s an input under the label `long`.
+# suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: some 20 000 (seconds) in the default
+# run, and a campaign of 30 s per input under the label `long`.
 function(suite_fuzz place)
   suite_test(${place} ${ARGN})
   suite_test_long(${place} SECONDS 1500 ENVIRONMENT SUITE_FUZZ_SECONDS=30)

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -116,19 +115,18 @@ class Mutator {
   std::vector<std::string> words_;
 };
 
-// Runs `read` on `count` mutations of `input`, however long they take: the same ones on every machine. A fault that one
-// mutation in n / 3 shows is found with a probability of 95 %. SUITE_FUZZ_SECONDS goes on for so long instead. At least
-// one mutation must be refused, and the input itself must be accepted.
+// Runs `read` on mutations of `input` until `count` are done or `seconds` have passed, but on 1000 at least
+// (SUITE_FUZZ_SECONDS overrides the time and lifts the count). At least one mutation must be refused, and the input
+// itself must be accepted.
 inline void fuzz(const Bytes& input, const std::function<void(std::span<const std::byte>)>& read, uint64_t seed = 1,
-                 size_t count = 2000, const std::vector<std::string>& words = {}) {
+                 size_t count = 20000, double seconds = 1.5, const std::vector<std::string>& words = {}) {
   ASSERT_NO_THROW(read(input));
-  double seconds = INFINITY;
   if (const char* longer = std::getenv("SUITE_FUZZ_SECONDS")) seconds = std::atof(longer), count = SIZE_MAX;
   const auto start = std::chrono::steady_clock::now();
   auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Mutator mutate(seed, words);
   size_t done = 0, refused = 0;
-  for (; done < count && elapsed() < seconds; ++done) {
+  for (; done < count && (elapsed() < seconds || done < 1000); ++done) {
     const Bytes b = mutate(input);
     const double before = cpu_seconds();
     try {

@@ -79,7 +79,7 @@ TEST(Fuzz, Params) {
     values += visit(p, 0);
     ++accepted;
   };
-  test::fuzz(test::bytes_of(valid), read, 1, 20000, words);
+  test::fuzz(test::bytes_of(valid), read, 1, 20000, 6, words);
   EXPECT_GT(accepted, 100u);  // the loop gets past the first check
   EXPECT_GT(values, accepted);
 }
@@ -93,7 +93,8 @@ TEST(Fuzz, ParamsJson) {
     ++accepted;
   };
   test::fuzz(test::bytes_of("{\"a\": [1, -2.5e3, {\"b\": \"t\\u00e9xt\", \"c\": null}], \"d\": true, \"e\": \"\"}"),
-             read, 2, 20000, {"{", "}", "[", "]", ",", ":", "\"", "\\u12", "1e999", "-", "[[[[[[[[", "\xff", "null"});
+             read, 2, 20000, 4,
+             {"{", "}", "[", "]", ",", ":", "\"", "\\u12", "1e999", "-", "[[[[[[[[", "\xff", "null"});
   EXPECT_GT(accepted, 100u);
   EXPECT_GT(values, accepted);
 }

@@ -55,8 +55,8 @@ const std::vector<std::string> kWords{
     "null", "-1", "1e308", "4294967295",      "5120",     "5126",      "[]",  "{}",   "\"\"",
     "true", "0",  "7",     "\"CUBICSPLINE\"", "\"VEC4\"", "\"scale\"", "2.5", "[[[[", "}}}}"};
 
-TEST(FuzzGltf, Text) { test::fuzz(test::bytes_of(model(false)), read_and_check, 1, 20000, kWords); }
-TEST(FuzzGltf, Container) { test::fuzz(test::bytes_of(model(true)), read_and_check, 2, 20000, kWords); }
+TEST(FuzzGltf, Text) { test::fuzz(test::bytes_of(model(false)), read_and_check, 1, 20000, 4, kWords); }
+TEST(FuzzGltf, Container) { test::fuzz(test::bytes_of(model(true)), read_and_check, 2, 20000, 4, kWords); }
 
 }  // namespace
 }  // namespace suite
