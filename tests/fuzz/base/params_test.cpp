@@ -5,25 +5,22 @@
 namespace suite {
 namespace {
 
-// Asks everything of a node that a reader could ask; how many values it had or refused.
-size_t visit(const Params& p, int depth) {
-  size_t n = 0;
-  if (depth > 6) return 0;
+// Asks everything of a node that a reader could ask.
+void visit(const Params& p, int depth) {
+  if (depth > 6) return;
   switch (p.kind()) {
     case Params::Kind::map:
-      for (const std::string& key : p.keys()) n += visit(p.at(key), depth + 1);
+      for (const std::string& key : p.keys()) visit(p.at(key), depth + 1);
       break;
     case Params::Kind::list:
-      for (const Params& item : p.items()) n += visit(item, depth + 1);
+      for (const Params& item : p.items()) visit(item, depth + 1);
       break;
     default:
       try {
         p.as_integer(0, 1000);
       } catch (const Error&) {
       }
-      ++n;
   }
-  return n;
 }
 
 }  // namespace
@@ -73,30 +70,28 @@ TEST(Fuzz, Params) {
                                           "`",
                                           std::string(300, ' '),
                                           std::string(200, '[')};
-  size_t accepted = 0, values = 0;
+  size_t accepted = 0;
   const auto read = [&](std::span<const std::byte> b) {
     const Params p = Params::parse_text({reinterpret_cast<const char*>(b.data()), b.size()}, "fuzz.yaml");
-    values += visit(p, 0);
+    visit(p, 0);
     ++accepted;
   };
   test::fuzz(test::bytes_of(valid), read, 1, 20000, 6, words);
   EXPECT_GT(accepted, 100u);  // the loop gets past the first check
-  EXPECT_GT(values, accepted);
 }
 
 // What programs write into other files as JSON.
 TEST(Fuzz, ParamsJson) {
-  size_t accepted = 0, values = 0;
+  size_t accepted = 0;
   const auto read = [&](std::span<const std::byte> b) {
     const Params p = Params::parse_json({reinterpret_cast<const char*>(b.data()), b.size()}, "fuzz.json");
-    values += visit(p, 0);
+    visit(p, 0);
     ++accepted;
   };
   test::fuzz(test::bytes_of("{\"a\": [1, -2.5e3, {\"b\": \"t\\u00e9xt\", \"c\": null}], \"d\": true, \"e\": \"\"}"),
              read, 2, 20000, 4,
              {"{", "}", "[", "]", ",", ":", "\"", "\\u12", "1e999", "-", "[[[[[[[[", "\xff", "null"});
   EXPECT_GT(accepted, 100u);
-  EXPECT_GT(values, accepted);
 }
 
 // Whatever bytes a message holds, what is shown is UTF-8 without control characters.
