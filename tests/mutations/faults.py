@@ -32,8 +32,7 @@ FAULTS = [
           "constexpr double kC1 = kPlanckConstant", of("spectral", "physics_spectral_planck")),
     Fault("planck_slope", "sign", "libs/spectral/planck.cpp", "return x / -std::expm1(-x);", "return x / std::expm1(x);",
           of("spectral", "physics_spectral_planck")),
-    Fault("cubature_share", "swapped index", "libs/spectral/cubature.cpp",
-          "band_.first + j >= low && band_.first + j < high ? 1.0 : 0.0", "band_.first + j >= low && band_.first + j <= high ? 1.0 : 0.0",
+    Fault("curve_integral", "factor 2", "libs/spectral/curve.cpp", "dx * (y_[i - 1] + 0.5 * slope * dx);", "dx * (y_[i - 1] + slope * dx);",
           of("spectral")),
     # scattering
     Fault("hg_share", "swapped index", "libs/optics/phases/hg.cpp",
