@@ -133,29 +133,82 @@ function(_suite_test_name place name label)
   set(${label} ${folder} PARENT_SCOPE)
 endfunction()
 
-# suite_test(<library>/<subject> USES ... VENDOR ... TIMEOUT s): the GoogleTest executable of <library>/<subject>_test.cpp
-# beside the CMakeLists; its label is the folder's name, one ctest entry per executable.
-function(suite_test place)
-  cmake_parse_arguments(A "" "TIMEOUT" "USES;VENDOR" ${ARGN})
-  _suite_test_name(${place} name label)
-  add_executable(${name} ${place}_test.cpp)
-  target_link_libraries(${name} PRIVATE suite_flags test_support ${A_USES} ${A_VENDOR} GTest::gtest GTest::gmock GTest::gtest_main)
-  # Tests are half of all that is compiled, and what they spend their time in are the libraries: -O1 halves their share.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  add_test(NAME ${name} COMMAND ${name})
-  # A test that hangs is to be ended, one on a busy machine not: the slowest take a minute of CPU.
-  if(NOT A_TIMEOUT)
-    set(A_TIMEOUT 1500)
+# suite_entry(<name> COMMAND ... [LABEL l] [TIMEOUT s] [PASS regex] [ENVIRONMENT ...]): one ctest entry, measured. Its label is that of
+# the folder, the seconds after which it is ended follow from tests/seconds.tsv. A name that the table does not hold has
+# SUITE_UNKNOWN_TIMEOUT of them, and the test seconds_table says which line to add. TIMEOUT is for the long runs.
+function(suite_entry name)
+  cmake_parse_arguments(A "" "LABEL;TIMEOUT;PASS" "COMMAND;ENVIRONMENT" ${ARGN})
+  if(NOT A_COMMAND OR A_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "suite_entry(${name}): expected COMMAND and known words, got '${A_UNPARSED_ARGUMENTS}'")
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${A_TIMEOUT} ENVIRONMENT "${SUITE_LEAKS}")
+  if(NOT A_LABEL)
+    get_filename_component(A_LABEL ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  endif()
+  set(processor unlimited)
+  if(NOT A_TIMEOUT)
+    set(A_TIMEOUT ${SUITE_UNKNOWN_TIMEOUT})
+    if(DEFINED SUITE_TIMEOUT_${name})
+      set(A_TIMEOUT ${SUITE_TIMEOUT_${name}})
+      set(processor ${SUITE_PROCESSOR_${name}})
+    endif()
+  endif()
+  set(labels ${A_LABEL})
+  if("${name}" IN_LIST SUITE_QUICK)
+    list(APPEND labels quick)
+  endif()
+  add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/tests/support/measured ${processor} ${A_COMMAND})
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${A_TIMEOUT})
+  if(A_PASS)
+    set_tests_properties(${name} PROPERTIES PASS_REGULAR_EXPRESSION "${A_PASS}")
+  endif()
+  if(A_ENVIRONMENT)
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT "${A_ENVIRONMENT}")
+  endif()
+  set_property(GLOBAL APPEND PROPERTY SUITE_ENTRIES "${name} ${A_LABEL}")
+endfunction()
+
+# Adds a source of tests to a GoogleTest program, which the first source of it makes.
+function(_suite_test_program program source libraries)
+  if(NOT TARGET ${program})
+    add_executable(${program})
+    target_link_libraries(${program} PRIVATE suite_flags test_support test_main)
+    # Tests are half of all that is compiled, and what they spend their time in are the libraries: -O1 halves their share.
+    target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
+    set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  endif()
+  target_sources(${program} PRIVATE ${source})
+  target_link_libraries(${program} PRIVATE ${libraries})
+endfunction()
+
+# suite_test(<library>/<subject> USES ... VENDOR ... [ENVIRONMENT ...]): the tests of <library>/<subject>_test.cpp beside the
+# CMakeLists as one ctest entry. In the folders of SUITE_ONE_PROGRAM a library's tests are one program, <label>_<library>, of
+# which the entry runs one source (test_main's --source); elsewhere a source is a program, of the entry's name.
+set(SUITE_ONE_PROGRAM unit)
+function(suite_test place)
+  cmake_parse_arguments(A "" "" "USES;VENDOR;ENVIRONMENT" ${ARGN})
+  _suite_test_name(${place} name label)
+  get_filename_component(library ${place} DIRECTORY)
+  set(program ${name})
+  if(label IN_LIST SUITE_ONE_PROGRAM)
+    set(program ${label}_${library})
+  endif()
+  _suite_test_program(${program} ${place}_test.cpp "${A_USES};${A_VENDOR}")
+  suite_entry(${name} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
+  if("${name}" IN_LIST SUITE_QUICK)
+    set_property(GLOBAL APPEND PROPERTY SUITE_QUICK_PROGRAMS ${program})
+  endif()
+endfunction()
+
+# suite_test_long(<library>/<subject> SECONDS s ENVIRONMENT ...): the same tests beyond the default run, entry <name>_long.
+function(suite_test_long place)
+  cmake_parse_arguments(A "" "SECONDS" "ENVIRONMENT" ${ARGN})
+  _suite_test_name(${place} name label)
+  suite_entry(${name}_long LABEL long TIMEOUT ${A_SECONDS} COMMAND $<TARGET_FILE:${name}> ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
 endfunction()
 
 # suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: some 20 000 (seconds) in the default
 # run, and a campaign of 30 s per input under the label `long`.
 function(suite_fuzz place)
   suite_test(${place} ${ARGN})
-  _suite_test_name(${place} name label)
-  add_test(NAME ${name}_long COMMAND ${name})
-  set_tests_properties(${name}_long PROPERTIES LABELS "long" TIMEOUT 1500 ENVIRONMENT "SUITE_FUZZ_SECONDS=30;${SUITE_LEAKS}")
+  suite_test_long(${place} SECONDS 1500 ENVIRONMENT SUITE_FUZZ_SECONDS=30)
 endfunction()

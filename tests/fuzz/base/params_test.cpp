@@ -6,24 +6,21 @@ namespace suite {
 namespace {
 
 // Asks everything of a node that a reader could ask.
-size_t visit(const Params& p, int depth) {
-  size_t n = 1;
-  if (depth > 6) return n;
+void visit(const Params& p, int depth) {
+  if (depth > 6) return;
   switch (p.kind()) {
     case Params::Kind::map:
-      for (const std::string& key : p.keys()) n += visit(p.at(key), depth + 1);
+      for (const std::string& key : p.keys()) visit(p.at(key), depth + 1);
       break;
     case Params::Kind::list:
-      for (const Params& item : p.items()) n += visit(item, depth + 1);
+      for (const Params& item : p.items()) visit(item, depth + 1);
       break;
     default:
       try {
-        n += static_cast<size_t>(p.as_integer(0, 1000)) % 2;
+        p.as_integer(0, 1000);
       } catch (const Error&) {
-        ++n;
       }
   }
-  return n;
 }
 
 }  // namespace
@@ -76,7 +73,7 @@ TEST(Fuzz, Params) {
   size_t accepted = 0;
   const auto read = [&](std::span<const std::byte> b) {
     const Params p = Params::parse_text({reinterpret_cast<const char*>(b.data()), b.size()}, "fuzz.yaml");
-    EXPECT_GE(visit(p, 0), 1u);
+    visit(p, 0);
     ++accepted;
   };
   test::fuzz(test::bytes_of(valid), read, 1, 20000, 6, words);
@@ -88,7 +85,7 @@ TEST(Fuzz, ParamsJson) {
   size_t accepted = 0;
   const auto read = [&](std::span<const std::byte> b) {
     const Params p = Params::parse_json({reinterpret_cast<const char*>(b.data()), b.size()}, "fuzz.json");
-    EXPECT_GE(visit(p, 0), 1u);
+    visit(p, 0);
     ++accepted;
   };
   test::fuzz(test::bytes_of("{\"a\": [1, -2.5e3, {\"b\": \"t\\u00e9xt\", \"c\": null}], \"d\": true, \"e\": \"\"}"),

@@ -201,6 +201,28 @@ TEST(Slab, LunarNight) {
   EXPECT_NEAR(noon, 386, 3);  // the published model's equatorial noon
 }
 
+// Kirchhoff's integral (Carslaw & Jaeger, 2.16): in steady conduction between faces of T and U the flux is that of the
+// integral of k from U to T over the thickness: k = c T^m gives c (T^(m+1) - U^(m+1)) / ((m + 1) L), for every power
+// that a layer may have.
+TEST(Slab, SteadyFluxThroughConductivityOfEveryPower) {
+  const double T = 400, U = 250, L = 0.1;
+  for (const size_t power : {0u, 1u, 2u, 3u}) {
+    SlabSpec spec;
+    spec.layers = {uniform(L, 1000, 1000, 1, 40)};
+    spec.layers[0].conductivity = {};
+    spec.layers[0].conductivity[power] = std::pow(300.0, -static_cast<double>(power));
+    spec.top = held([&](double) { return T; }), spec.bottom = held([&](double) { return U; });
+    Slab slab(spec, {1e-4, 1e5, 1e-9, 60});
+    slab.start(0, 300);
+    slab.advance(1e6);
+    slab.reset_means();
+    slab.advance(1.1e6);
+    const double m = static_cast<double>(power) + 1;
+    const double exact = spec.layers[0].conductivity[power] * (std::pow(T, m) - std::pow(U, m)) / (m * L);
+    for (const double flux : slab.mean_fluxes()) EXPECT_NEAR(flux / exact, 1, 1e-6) << power;
+  }
+}
+
 // Steady states in closed form: a layered wall with a resistive contact, k(T), and a heated layer.
 TEST(Slab, SteadyStates) {
   SlabSpec wall;

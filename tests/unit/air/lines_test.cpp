@@ -62,6 +62,24 @@ TEST(Lines, MiddleOfALorentzLine) {
   EXPECT_EQ(partition_ratio(Gas::co2, 148), 0.5);
 }
 
+// S(T) / S(296 K) of one state's energy E: exp(-c2 E (1 / T - 1 / 296)) and the stimulated emission of the line itself,
+// with c2 = h c / k = 1.4387769 cm K (L. S. Rothman et al., J. Quant. Spectrosc. Radiat. Transfer 60, 1998, equation
+// A11).
+TEST(Lines, StrengthFollowsTheLowerState) {
+  LineGas gas = one_line();
+  gas.partition = [](int, double) { return 1.0; };
+  SpectralLine& line = gas.lines[0];
+  line.wavenumber_cm = 500, line.air_width_cm = line.self_width_cm = 0.5, line.exponent = 0;
+  const auto middle = [&](double kelvin) { return line_spectrum(gas, 500, 0.001, 3, 101325, kelvin)[0]; };
+  for (const double energy : {0.0, 1000.0})
+    for (const double T : {220.0, 350.0}) {
+      line.lower_energy_cm = energy;
+      const double c2 = 1.4387769, lower = std::exp(-c2 * energy * (1 / T - 1 / 296.0)),
+                   stimulated = (1 - std::exp(-c2 * 500 / T)) / (1 - std::exp(-c2 * 500 / 296.0));
+      EXPECT_NEAR(middle(T) / middle(296) / (lower * stimulated), 1, 1e-3) << energy << " cm-1, " << T << " K";
+    }
+}
+
 // A table of one gas: the mean over g is the mean of the spectrum, and levels at its own pressures and temperatures get
 // the transmittance of the spectrum itself.
 TEST(Lines, TablesKeepMeanAndTransmittance) {

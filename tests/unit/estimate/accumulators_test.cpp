@@ -116,6 +116,37 @@ TEST(Accumulators, one_sample_tells_nothing_about_its_error) {
   EXPECT_EQ(error, INFINITY);
 }
 
+// Of two independent values the variance of the mean is (a - b)^2 / 4; of 0, 0, 0, 4 it is 12 / (4 * 3) = 1.
+TEST(Accumulators, scatter_is_the_variance_of_the_mean_of_independent_samples) {
+  Accumulators a({1, 1, 4});
+  a.set_paths(0, 2);
+  a.note_sample(0, 0, 1), a.note_sample(0, 1, 4);
+  EXPECT_NEAR(a.scatter(0, 2.5), 2.25, 1e-12);
+  Accumulators b({1, 1, 4});
+  b.set_paths(0, 4);
+  b.note_sample(0, 2, 4);
+  EXPECT_NEAR(b.scatter(0, 1), 1, 1e-12);
+}
+
+// Where a scramble holds half of what counts or more, the scrambles weigh the same: of two values a and b the mean has
+// the standard error |a - b| / 2, and of three that share 2 : 1 : 1 the squared deviations are divided by 3 * 2.
+TEST(Accumulators, few_samples_share_the_error_evenly) {
+  Accumulators two({1, 1, 4});
+  two.sums(0, 0)[0] = 1, two.sums(0, 1)[0] = 4;
+  two.set_paths(0, 2);
+  double mean = 0, error = 0;
+  two.estimate(0, 0, mean, error);
+  EXPECT_NEAR(mean, 2.5, 1e-12);
+  EXPECT_NEAR(error, 1.5, 1e-12);
+  Accumulators three({1, 1, 4});
+  three.set_paths(0, 5);  // 2, 1, 1, 1
+  three.failures(0, 3) = 1;
+  three.sums(0, 0)[0] = 2 * 4, three.sums(0, 1)[0] = 1, three.sums(0, 2)[0] = 7;  // their means: 4, 1, 7
+  three.estimate(0, 0, mean, error);
+  EXPECT_NEAR(mean, 4, 1e-12);
+  EXPECT_NEAR(error, std::sqrt((0 + 9 + 9) / 6.0), 1e-12);
+}
+
 Capture capture_of(uint32_t columns, uint32_t rows) {
   Capture c;
   c.columns = columns, c.rows = rows;

@@ -128,6 +128,14 @@ TEST(PooledErrors, WhatIsNotFiniteStaysAndTellsNothing) {
   EXPECT_NEAR(p.at(40, 40), 1, 1e-12);
 }
 
+// Two octaves of S apart count 1 / (1 + 2^2) of one that is alike: with S = 1, 4, 1 and E^2 = 1, 8, 1 the first expects
+// r S = (8 / 5 + 1) / (4 / 5 + 1).
+TEST(PooledErrors, OctavesApartCountLess) {
+  std::vector<double> errors{1, std::sqrt(8), 1}, scatter{1, 4, 1}, none(3, 0.0);
+  pool_errors({3, 1, 0, scatter, none}, kDegrees, errors);
+  EXPECT_NEAR(errors[0] * errors[0], (1 + 2.6 / 1.8) / 2, 1e-12);
+}
+
 TEST(PooledErrors, OneProblemAndOneRow) {
   std::vector<double> error{0.5}, scatter{1}, around{0};
   pool_errors({1, 1, 0, scatter, around}, kDegrees, error);

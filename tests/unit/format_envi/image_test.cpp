@@ -55,6 +55,20 @@ TEST(EnviHeader, ReadsEveryKeyWithUnits) {
   EXPECT_EQ(h.extra[0].first, "reflectance scale factor");
 }
 
+// A stored 10000 is a reflectance of 1; gains multiply, one a band; a band whose `bbl` is 0 is bad.
+TEST(EnviNumbers, SayWhatStoredNumbersStandFor) {
+  const EnviNumbers scaled = numbers_of(parse_envi_header(kHeader, "a.hdr"), "a.hdr");
+  ASSERT_EQ(scaled.gain.size(), 2u);
+  for (const double gain : scaled.gain) EXPECT_DOUBLE_EQ(gain, 1e-4);
+  EXPECT_TRUE(scaled.offset.empty());
+  const std::string text = replaced(kHeader, "reflectance scale factor = 10000",
+                                    "data gain values = {2, 3}\ndata offset values = {0, -1}\nbbl = {1, 0}");
+  const EnviNumbers given = numbers_of(parse_envi_header(text, "a.hdr"), "a.hdr");
+  EXPECT_EQ(given.gain, (std::vector<double>{2, 3}));
+  EXPECT_EQ(given.offset, (std::vector<double>{0, -1}));
+  EXPECT_EQ(given.bad, (std::vector<bool>{false, true}));
+}
+
 TEST(EnviHeader, FaultsAreLocatedAndExplained) {
   const struct {
     const char *from, *to, *expected;

@@ -79,6 +79,20 @@ TEST(Ephemeris, MoonParallaxLowersTheMoon) {
   EXPECT_NEAR(near.angular_radius / kDegree, 0.26, 0.02);
 }
 
+// The turning Earth carries the observer eastward at w r cos(latitude), 465 m/s at the equator: what stands above is
+// seen w r / c = 1.5515e-6 rad (0.32") further east than its parallax leaves it (Explanatory Supplement to the
+// Astronomical Almanac, 1992, section 3.25). A site at the Earth's centre has neither.
+TEST(Ephemeris, TheTurningEarthMovesTheSunEast) {
+  const SceneFrame frame({0, 0, 0});
+  const Instant noon = instant_from_utc(parse_iso8601("2024-03-20T12:07:30Z"));
+  const Vec3 centre_site = frame.enu_from_ecef({0, 0, 0});
+  const SkyBody centre = sun_at(frame, centre_site, noon), ground = sun_at(frame, {}, noon);
+  ASSERT_GT(ground.direction.z, 0.999);
+  const Dir by_parallax = normalized(centre_site + centre.direction * centre.distance);
+  EXPECT_NEAR(ground.direction.x - by_parallax.x, 7.292115e-5 * 6378137 / 299792458, 1e-9);
+  EXPECT_NEAR(ground.direction.y - by_parallax.y, 0, 1e-9);
+}
+
 // The 2024 April 8 eclipse was total at Mazatlan (23.2 N 106.4 W) around 18:09:30 UTC: the disks must nearly coincide.
 TEST(Ephemeris, SunAndMoonMeetInTheEclipse) {
   const SceneFrame frame({23.2, -106.42, 10});

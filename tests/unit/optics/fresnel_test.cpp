@@ -39,6 +39,26 @@ TEST(Fresnel, LimitsOfDielectrics) {
   // Transmittance at grazing keeps its relative precision: 2 c (1 + n^2) / sqrt(n^2 - 1) to first order in c.
   EXPECT_NEAR(fresnel_dielectric(1e-9, 1.5).transmittance / (2e-9 * (1 + 2.25) / std::sqrt(1.25)), 1, 1e-8);
 }
+// Radiance over the squared index is what an interface keeps (R. Preisendorfer, 1976): straight through n = 1.5 a
+// surface reflects 0.04, lets 0.96 / n^2 in and 0.96 n^2 out, and what is bent obeys Snell's law on both sides.
+TEST(Fresnel, DielectricScalesRadianceByTheSquaredIndex) {
+  const SpectralState state = test::test_state(1);
+  ModelSpec spec{"dielectric", {}, {{"index", Curve::constant(1.5)}}, {}, nullptr};
+  check_model(spec);
+  const auto model = bake(spec, state);
+  std::vector<float> W(state.size()), through(state.size());
+  const struct { double side, passed; } sides[] = {{1, 0.96 / 2.25}, {-1, 0.96 * 2.25}};
+  for (const auto& s : sides) {
+    model->total({0, 0, s.side}, W);
+    EXPECT_NEAR(W[0], 0.04 + s.passed, 1e-6) << s.side;
+    const auto bent = model->sample({0.3, 0, s.side * std::sqrt(1 - 0.09)}, {0.5, 0.5}, 0.99, 0);
+    ASSERT_TRUE(bent && bent->delta);
+    EXPECT_NEAR(bent->in.x, s.side > 0 ? -0.2 : -0.45, 1e-12) << "sine 0.3 over or times 1.5";
+    EXPECT_LT(bent->in.z * s.side, 0);
+    model->delta_weight({0, 0, s.side}, bent->lobe, 0, through);
+    EXPECT_NEAR(through[0], s.passed, 1e-6) << s.side;
+  }
+}
 TEST(Fresnel, ConductorAgreesWithTheTextbook) {
   for (const auto& [n, k] : {std::pair{0.2, 3.4}, {1.35, 9.6}, {2.0, 0.0}, {0.05, 0.01}, {3.0, 50.0}})
     for (const double c : {1.0, 0.7, 0.2, 1e-3, 1e-6}) {
