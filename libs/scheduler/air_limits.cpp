@@ -73,8 +73,8 @@ std::optional<std::string> open_below(const SourceSpecs& written, const Scene& s
       "air: the scene reaches %.3g km from its middle; beyond it nothing ends the lowest air, which goes on downwards "
       "and sends light back as a bright ground would: over a dark scene up to %.2g %% of what is seen near the "
       "horizon, "
-      "a third of that in the zenith (0.55 um, visibility 23 km)",
-      reach * 1e-3, 100 * glow_from_below(reach, body.zenith));
+      "%s in the zenith (0.55 um, visibility 23 km)",
+      reach * 1e-3, 100 * glow_from_below(reach, body.zenith), body.zenith > 0.5 * kPi ? "as much" : "a third of that");
   if (body.zenith > kMeasuredTwilight)
     text += strf("; with the %s at %.3g degrees from the zenith, lower than 92, it may be all of it", body.body.c_str(),
                  body.zenith / kDegree);

@@ -113,6 +113,8 @@ TEST(AirLimits, OpenAirIsNoBrighterThanReported) {
   };
   EXPECT_THAT(said(80), Contains(HasSubstr("up to 17 % of what is seen near the horizon")));
   EXPECT_THAT(said(92), Contains(HasSubstr("up to 20 % of what is seen near the horizon")));
+  EXPECT_THAT(said(80), Contains(HasSubstr("a third of that in the zenith")));
+  EXPECT_THAT(said(92), Contains(HasSubstr("as much in the zenith")));
   EXPECT_THAT(said(92), Not(Contains(HasSubstr("all of it"))));
   EXPECT_THAT(said(95), Contains(HasSubstr("it may be all of it")));
 }
