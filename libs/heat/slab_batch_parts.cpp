@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFinest = 0x1p-16;     // of the step: below it there is no solution
 constexpr double kFineEnough = 0x1p-7;  // of the step: parts for the sake of errors are no shorter
-constexpr double kError = 1;            // K, estimated of a part
+constexpr double kError = 0.1;          // K, estimated of a part
 
 // Lines over a share of a step.
 FaceLines between(const FaceLines& whole, double begin, double end) {

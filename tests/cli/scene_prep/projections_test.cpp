@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 
 #include "base/error.h"
+#include "math/vec.h"
 #include "support/programs_kit.h"
 
 namespace suite {
