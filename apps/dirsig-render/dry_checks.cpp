@@ -1,34 +1,89 @@
 #include "dry_checks.h"
 
 #include <algorithm>
+#include <set>
 
-#include "surface/material_lookup.h"
-#include "surface/optics.h"
+#include "estimate/budget.h"
+#include "guard.h"
+#include "heat/seen_warmth.h"
+#include "scheduler/items.h"
+#include "scheduler/primed.h"
+#include "surface/cut_out.h"
 
 namespace suite {
 
-void check_optics(const std::shared_ptr<const Scene>& scene, const Simulation& sim) {
-  const Tracer tracer(scene);
-  const std::vector<bool> used = used_materials(tracer);
-  if (std::find(used.begin(), used.end(), true) == used.end()) return;
-  for (size_t s = 0; s < sim.sensors.size(); ++s) {
-    const Sensor& sensor = *sim.sensors[s];
-    for (size_t k = 0; k < sensor.states().size(); ++k) {
-      const SpectralState& state = sensor.states()[k];
-      try {
-        const Optics optics(*scene, state, used, {.pending = true});
-      } catch (const Error& e) {
-        std::string bands;
-        for (const Band& b : sensor.bands(k))
-          if (bands.size() < 80) bands += (bands.empty() ? "'" : ", '") + b.name + "'";
-        throw Error(e.where().file.empty() ? sim.sensor_where[s] : e.where(),
-                    strf("sensor '%s', %.4g to %.4g um (%s): ", sensor.name().c_str(), state.low_um, state.high_um,
-                         bands.c_str()) +
-                        e.message(),
-                    e.hint());
+namespace {
+
+// What all captures of a job share here, one after the other.
+struct Primer {
+  const std::shared_ptr<const Scene>& scene;
+  JobOptions options;
+  bool moves;
+  Kits kits;
+  StateNumbers numbers;
+  std::shared_ptr<const Tracer> tracer;
+  TimeSpan of{};
+
+  Primer(const std::shared_ptr<const Scene>& s, const Simulation& sim, const JobOptions& o, TimeSpan window)
+      : scene(s),
+        options(o),
+        moves(changes_in_time(*s)),
+        kits(*s, sim.sources, sim.periodic.has_value(), window, o.kit_bytes, {.pending = waits_for_heat(*s)}) {
+    options.pipeline.gloss_photons = 0;  // they would be traced
+  }
+  // Under a limit, however large, nothing is built before a ray comes.
+  void turn_to(const TimeWindow& window) {
+    const TimeSpan span{window.begin, window.end};
+    if (tracer && (!moves || span == of)) return;
+    tracer = std::make_shared<const Tracer>(scene, options.periodic, span, cut_out(*scene), TileLimit{SIZE_MAX, {}});
+    of = span;
+  }
+  void prime(const Sensor& sensor, const Capture& capture) {
+    const size_t state = numbers.of(sensor.states()[capture.state]);
+    kits.expect(state);
+    Kit kit = kits.get(state, sensor, capture, tracer);
+    check_many_suns(sensor, capture, kit);
+    const Primed primed(tracer, std::move(kit), sensor, capture.state, options.pipeline);
+    kits.done(state);
+  }
+  void check(const Sensor& sensor) {
+    std::set<size_t> states;
+    for (const Task& task : sensor.tasks())
+      for (const Capture& c : task.captures) {
+        check_temperatures(*scene, c.window.begin, c.window.end);
+        goals_of(sensor, c, options.budget);
+        turn_to(c.window);
+        if (states.insert(c.state).second) prime(sensor, c);
       }
+  }
+};
+
+}  // namespace
+
+void check_captures(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
+  TimeSpan window{kEver, -kEver};
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures) window = hull(window, c.window);
+  Primer primer(scene, sim, options, window);
+  for (size_t s = 0; s < sim.sensors.size(); ++s) {
+    try {
+      primer.check(*sim.sensors[s]);
+    } catch (const Error& e) {
+      throw located(e, *scene, sim, s);
     }
   }
+}
+
+Error located_in_captures(const Error& fault, const std::shared_ptr<const Scene>& scene, const Simulation& sim,
+                          const JobOptions& options) {
+  if (!fault.where().file.empty()) return fault;
+  try {
+    check_captures(scene, sim, options);
+  } catch (const Error& e) {
+    return e;
+  }
+  return located(fault, *scene, sim);
 }
 
 }  // namespace suite

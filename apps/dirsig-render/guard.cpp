@@ -1,14 +1,19 @@
 #include "guard.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <map>
 
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/outputs.h"
+#include "base/placed.h"
 #include "base/progress.h"
 #include "base/run_app.h"
 #include "truth_picture.h"
@@ -134,6 +139,50 @@ void check_folder(const std::string& folder, const Simulation& sim, bool picture
   if (pictures) check_room(folder, sim);
 }
 
+namespace {
+
+// The folder, or that of its parents which is there and in which it would be made.
+std::string nearest_folder(const std::string& folder) {
+  std::error_code none;
+  std::filesystem::path at = std::filesystem::absolute(in_folder(folder, "x"), none).parent_path();
+  while (!std::filesystem::exists(at, none) && at.has_relative_path()) at = at.parent_path();
+  return at.string();
+}
+
+// Only a try tells of permissions, read-only disks and quotas alike. It leaves nothing.
+void check_writable(const std::string& folder) {
+  const std::string there = nearest_folder(folder);
+  if (!std::filesystem::is_directory(there))
+    throw Error(Where{folder, 0, 0, {}, -1}, "folder cannot be made: '" + there + "' is a file",
+                "name a writable place");
+  std::string trial = in_folder(there, ".suite-XXXXXX");
+  if (::mkdtemp(trial.data()) == nullptr)
+    throw Error(Where{folder, 0, 0, {}, -1}, "folder is not writable: '" + there + "': " + std::strerror(errno),
+                "name a writable place");
+  ::rmdir(trial.c_str());
+}
+
+}  // namespace
+
+void check_place(const RenderOptions& o, const Simulation& sim, bool pictures) {
+  check_inputs(o, sim);
+  check_names(sim);
+  check_writable(o.output);
+  if (pictures) check_room(nearest_folder(o.output), sim);
+}
+
+void check_memory(const Simulation& sim, const JobOptions& options) {
+  const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  for (size_t s = 0; s < sim.sensors.size(); ++s) {
+    const double needed = forecast_bytes(Sensors(&sim.sensors[s], 1), options);
+    if (needed > there)
+      throw Error(sim.sensor_where[s],
+                  strf("the largest capture of sensor '%s' takes %s, and this machine has %s",
+                       sim.sensors[s]->name().c_str(), human_bytes(needed).c_str(), human_bytes(there).c_str()),
+                  "fewer columns or rows, or fewer lines_per_capture");
+  }
+}
+
 double image_bytes(const Simulation& sim) { return room_for(sim).whole; }
 
 std::string what_is_left(const std::string& folder, size_t finished, size_t captures, const JobOptions& options) {
@@ -149,8 +198,30 @@ std::string what_is_left(const std::string& folder, size_t finished, size_t capt
          "and its budget goes on from there";
 }
 
-Error located(const Error& fault, const Scene& scene, const Simulation& sim) {
+namespace {
+
+// Sensor and bands of what it could not be told where it is.
+std::string told_of(const Sensor& sensor) {
+  double low = INFINITY, high = -INFINITY;
+  std::string bands;
+  for (size_t state = 0; state < sensor.states().size(); ++state)
+    for (const Band& b : sensor.bands(state)) {
+      low = std::fmin(low, b.low_um()), high = std::fmax(high, b.high_um());
+      if (bands.size() < 80) bands += (bands.empty() ? "'" : ", '") + b.name + "'";
+    }
+  return strf("sensor '%s', %.4g to %.4g um (%s): ", sensor.name().c_str(), low, high, bands.c_str());
+}
+
+// Libraries that refuse to repeat a scene all call it so.
+bool of_periodic(const Error& fault, const Simulation& sim) {
+  return sim.periodic && fault.message().find("periodic scene") != std::string::npos;
+}
+
+}  // namespace
+
+Error located(const Error& fault, const Scene& scene, const Simulation& sim, std::optional<size_t> sensor) {
   if (!fault.where().file.empty()) return fault;
+  if (of_periodic(fault, sim)) return placed(fault, sim.periodic_where);
   std::map<std::string, Curve> curves;  // of what the fault is about
   const auto meant = [&](const std::string& whose) { return fault.message().starts_with(whose + ":"); };
   for (const Material& m : scene.materials)
@@ -169,7 +240,10 @@ Error located(const Error& fault, const Scene& scene, const Simulation& sim) {
                              fault.message().substr(0, fault.message().find(':')) + " has its " + name + " from " +
                              curve.range_text(),
                          "in the scene's text give a longer curve, or declare 'outside: hold' or 'zero'");
-  return Error(Where{sim.path, 0, 0, {}, -1}, fault.message(), fault.hint(), fault.code());
+  if (!sensor) return placed(fault, Where{sim.path, 0, 0, {}, -1});
+  const Sensor& of = *sim.sensors[*sensor];
+  const bool named = fault.message().find("sensor '" + of.name() + "'") != std::string::npos;
+  return placed(fault, sim.sensor_where[*sensor], named ? "" : told_of(of));
 }
 
 }  // namespace suite

@@ -1,6 +1,7 @@
 // What keeps a run from doing harm or being lost: no input is replaced, there is room for the results, and a run that
 // is cut short says what it left behind.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "base/run_lock.h"
@@ -25,7 +26,16 @@ double image_bytes(const Simulation& simulation);
 std::string what_is_left(const std::string& folder, size_t finished, size_t captures, const JobOptions& options);
 
 // A fault without a place, as the simulation's: at the sensor one of whose bands reaches beyond a curve of the material
-// or medium that the fault is about, else of the text as a whole.
-Error located(const Error& fault, const Scene& scene, const Simulation& simulation);
+// or medium that the fault is about; at `periodic` where that is refused; at the sensor at which it was found, with its
+// bands; else of the text as a whole.
+Error located(const Error& fault, const Scene& scene, const Simulation& simulation,
+              std::optional<size_t> sensor = std::nullopt);
+
+// For --dry-run: refuses what lock_place() and check_folder() would, and writes nothing. Error: a folder that cannot be
+// made or written to.
+void check_place(const RenderOptions& options, const Simulation& simulation, bool pictures);
+
+// A capture that could never be held, at its sensor.
+void check_memory(const Simulation& simulation, const JobOptions& options);
 
 }  // namespace suite

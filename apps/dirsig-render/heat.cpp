@@ -10,6 +10,7 @@
 #include "base/files.h"
 #include "base/outputs.h"
 #include "base/parallel.h"
+#include "base/placed.h"
 #include "base/progress.h"
 #include "base/run_app.h"
 #include "base/stopwatch.h"
@@ -204,8 +205,41 @@ std::vector<std::array<double, 2>> heat_windows_um() {
   return {{sun.low_um, sun.high_um}, {glow.low_um, glow.high_um}};
 }
 
-Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
-                   const RenderOptions& options, const std::string& folder, Ranks* ranks) {
+namespace {
+
+// The first sensor that sees it; else the text.
+Where where_heat_is_seen(const Simulation& sim) {
+  for (size_t s = 0; s < sim.sensors.size(); ++s)
+    if (std::ranges::any_of(sim.sensors[s]->states(), sees_warmth)) return sim.sensor_where[s];
+  return {sim.path, 0, 0, {}, -1};
+}
+
+// Whether temperatures are to be found or read. Error: they cannot be, or are asked for in two ways.
+bool asks_heat(const Scene& scene, const Simulation& sim, const RenderOptions& options) {
+  if (!waits_for_heat(scene) || !sees_heat(sim, options)) return false;
+  if (!sim.heat) {
+    for (const TemperatureBinding& t : scene.temperatures)
+      if (t.spec.model == "heat")
+        throw Error(where_heat_is_seen(sim),
+                    "the temperature of material '" + scene.materials[t.material].id +
+                        "' follows from weather, which is not given",
+                    "add 'weather: FILE' and 'heat: {}'");
+  }
+  if (!options.heat.empty() && !options.heat_operator.empty())
+    throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
+  if (!options.heat_operator.empty() && sim.heat->leave_out > 0)
+    throw Error(sim.heat->where, "--heat-operator has the paths of all elements, and some are to be left out",
+                "drop 'leave_out_k' or --heat-operator");
+  return true;
+}
+
+// Faults of the search are those of `heat`, unless they have a place of their own.
+Error at_heat(const Error& fault, const Simulation& sim) {
+  return placed(fault, sim.heat ? sim.heat->where : Where{sim.path, 0, 0, {}, -1});
+}
+
+Heating heating(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
+                const RenderOptions& options, const std::string& folder, Ranks* ranks) {
   if (!waits_for_heat(*scene)) {
     if (sim.heat && sees_heat(sim, options))
       emit({Dr::heat_unused,
@@ -216,19 +250,7 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
     note("no band sees the warmth of weather: temperatures are not found");
     return {.pending = true};
   }
-  if (!sim.heat) {
-    for (const TemperatureBinding& t : scene->temperatures)
-      if (t.spec.model == "heat")
-        throw Error(Where{sim.path, 0, 0, {}, -1},
-                    "the temperature of material '" + scene->materials[t.material].id +
-                        "' follows from weather, which is not given",
-                    "add 'weather: FILE' and 'heat: {}'");
-  }
-  if (!options.heat.empty() && !options.heat_operator.empty())
-    throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
-  if (!options.heat_operator.empty() && sim.heat->leave_out > 0)
-    throw Error(sim.heat->where, "--heat-operator has the paths of all elements, and some are to be left out",
-                "drop 'leave_out_k' or --heat-operator");
+  asks_heat(*scene, sim, options);
   if (!options.part.empty() && options.heat.empty())
     note(
         "heat: every part finds the same temperatures; `--heat-only` finds them once, and `--heat FILE` gives them to "
@@ -254,6 +276,17 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
     if (sim.heat->leave_out > 0 && options.heat.empty() && p->elements->rests().empty()) share_kept(*p, *ranks);
   }
   return {.field = std::make_shared<const FoundField>(p, result, points_of(*p, *result, sim, *scene))};
+}
+
+}  // namespace
+
+Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
+                   const RenderOptions& options, const std::string& folder, Ranks* ranks) {
+  try {
+    return heating(scene, sim, job, options, folder, ranks);
+  } catch (const Error& e) {
+    throw at_heat(e, sim);
+  }
 }
 
 void tell_of_points(const Heating& heating) {
@@ -302,10 +335,14 @@ double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& sce
                                  });
 }
 
-}  // namespace
-
-std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim) {
-  if (!sim.heat || !waits_for_heat(*scene)) return {};
+std::string forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
+                     const RenderOptions& options) {
+  if (!asks_heat(*scene, sim, options)) return {};
+  if (!options.heat.empty()) {  // it is read as the run does
+    heating_of(scene, sim, job, options, "", nullptr);
+    return {};
+  }
+  if (!options.heat_operator.empty()) operator_cut(options.heat_operator);  // it can be read
   const PreparedHeat p = prepare(scene, sim, {});
   const double faces = static_cast<double>(p.faces->size());
   // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every eight paths at half
@@ -331,6 +368,17 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
          (p.spec.target > 0
               ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
               : std::string{});
+}
+
+}  // namespace
+
+std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
+                          const RenderOptions& options) {
+  try {
+    return forecast(scene, sim, job, options);
+  } catch (const Error& e) {
+    throw at_heat(e, sim);
+  }
 }
 
 }  // namespace suite

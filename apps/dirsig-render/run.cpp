@@ -1,7 +1,5 @@
 #include "run.h"
 
-#include <unistd.h>
-
 #include <cmath>
 
 #include "air_told.h"
@@ -16,6 +14,7 @@
 #include "deck_told.h"
 #include "dirsig_import.h"
 #include "dry_checks.h"
+#include "dry_run.h"
 #include "flags_told.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
@@ -91,66 +90,6 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
   }
 }
 
-// What the scene will take in memory.
-void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
-  const Sensor& first = *sim.sensors.front();
-  const TimeWindow window = first.tasks().front().captures.front().window;
-  // Under a limit, however large, nothing is built before a ray comes.
-  const Tracer tracer(scene, options.periodic, {window.begin, window.end}, nullptr, {SIZE_MAX, {}});
-  const TileForecast f = tracer.forecast();
-  const auto text = [](uint64_t bytes) { return human_bytes(static_cast<double>(bytes)); };
-  std::printf("%zu tiles of the scene take %s of geometry and some %s of the ray tracer's structures\n", f.tiles,
-              text(f.geometry).c_str(), text(f.structures).c_str());
-  const uint64_t all = f.geometry + f.structures, limit = options.tiles.bytes;
-  if (!limit || f.tiles == 0) return;
-  const double share = static_cast<double>(limit) / static_cast<double>(std::max<uint64_t>(all, 1));
-  std::printf("in %s about %.0f of them fit; the largest takes %s%s\n", text(limit).c_str(),
-              std::min(1.0, share) * static_cast<double>(f.tiles), text(f.largest).c_str(),
-              f.largest > limit ? ", which is more, and is held all the same" : "");
-}
-
-void dry_run(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options,
-             const RenderOptions& o) {
-  check_optics(scene, sim);
-  tell_forecast(scene, sim, options);
-  if (sees_heat(sim, o)) std::fputs(heat_forecast(scene, sim).c_str(), stdout);
-  for (const auto& sensor : sim.sensors) {
-    std::printf("sensor '%s'\n", sensor->name().c_str());
-    for (const SpectralState& s : sensor->states())
-      std::printf("  state %s\n", s.choice.error > 0 ? strf("%.4g-%.4g um, bins for a spectral error of %g %%, "
-                                                            "reference %.4g um",
-                                                            s.low_um, s.high_um, 100 * s.choice.error, s.reference_um)
-                                                           .c_str()
-                                                     : s.text().c_str());
-    for (const Task& t : sensor->tasks())
-      for (const Capture& c : t.captures)
-        std::printf("  task '%s', capture '%s': %u x %u problems, %g to %g s\n", t.name.c_str(), c.name.c_str(),
-                    c.columns, c.rows, c.window.begin, c.window.end);
-  }
-  const JobOrder order = order_of(sim.sensors, false, sim.sources.dated());
-  std::printf("order of the captures:");
-  for (const size_t id : order.captures) std::printf(" %zu", id);
-  std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n",
-              order.state_changes, human_count(forecast_paths(sim.sensors, options)).c_str(),
-              human_bytes(forecast_bytes(sim.sensors, options)).c_str());
-  if (!options.share) return;
-  size_t blocks = 0, mine = 0;
-  for (const std::vector<uint8_t>& capture : blocks_of_share(sim.sensors, *options.share))
-    for (const uint8_t m : capture) ++blocks, mine += m;
-  std::printf("%s runs %zu of %zu blocks of pixels, these paths\n", options.share->text().c_str(), mine, blocks);
-}
-
-// A capture that could never be held is refused before anything is computed.
-void check_memory(const Simulation& sim, const JobOptions& options) {
-  const double needed = forecast_bytes(sim.sensors, options),
-               there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  if (needed > there)
-    throw Error(Where{sim.path, 0, 0, {}, -1},
-                strf("the largest capture takes %s, and this machine has %s", human_bytes(needed).c_str(),
-                     human_bytes(there).c_str()),
-                "fewer columns or rows, or fewer lines_per_capture");
-}
-
 void tell(const JobReport& r, const Scene& scene) {
   const double paths = static_cast<double>(r.statistics.paths);
   note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer",
@@ -193,7 +132,7 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
   try {
     return run_job(scene, sim.sources, sim.sensors, options);
   } catch (const Error& e) {
-    if (!e.where().file.starts_with(in_folder(folder, ""))) throw located(e, *scene, sim);
+    if (!e.where().file.starts_with(in_folder(folder, ""))) throw located_in_captures(e, scene, sim, options);
     size_t captures = 0;
     for (const auto& sensor : sim.sensors)
       for (const Task& task : sensor->tasks()) captures += task.captures.size();
@@ -256,12 +195,26 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
   for (const Diagnostic& d : diagnose_air(sim.sources, scene, sim.sensors, options)) emit(d);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
-  for (const auto& sensor : sim.sensors) {
-    check_preview(*sensor, sim.output.preview_of(sensor->name()));
-    for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
-    for (const std::string& channel : sensor->channels()) channel_rows().find(channel);
-    check_air_asked(sim, scene, *sensor);
-    choose_bins_of(*sensor, scene, standing, options.biases);
+  for (size_t s = 0; s < sim.sensors.size(); ++s) {
+    Sensor& sensor = *sim.sensors[s];
+    try {
+      check_preview(sensor, sim.output.preview_of(sensor.name()));
+      for (const std::string& truth : sensor.truth()) truth_rows().find(truth);
+      for (const std::string& channel : sensor.channels()) channel_rows().find(channel);
+      check_air_asked(sim, scene, sensor);
+      choose_bins_of(sensor, scene, standing, options.biases);
+    } catch (const Error& e) {
+      throw located(e, scene, sim, s);
+    }
+  }
+}
+
+// As check_sensors(); all is told with a place.
+void check_job(Simulation& sim, const Scene& scene, JobOptions& options) {
+  try {
+    check_sensors(sim, scene, options);
+  } catch (const Error& e) {
+    throw located(e, scene, sim);
   }
 }
 
@@ -293,7 +246,7 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
   try {
     return run_job(scene, sim.sources, sim.sensors, options).stopped ? 128 + stop_signal() : 0;
   } catch (const Error& e) {
-    throw located(e, *scene, sim);
+    throw located_in_captures(e, scene, sim, options);
   }
 }
 
@@ -358,13 +311,14 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   JobOptions options = job_options(sim, o);
   const std::vector<int> forecast = ranks_of(cli, o);
   const LinkCosts link = link_of(cli, o);
-  if (!o.dry_run) check_memory(sim, options);
+  if (forecast.empty()) check_memory(sim, options);  // other machines may have more
 
   // What can be refused is refused before rendering starts.
   const LoadedScene loaded = load_scenes(sim, options, o, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
-  check_sensors(sim, *scene, options);
+  check_job(sim, *scene, options);
+  const bool part = options.share && options.share->runs();
   if (o.dry_run) dry_run(scene, sim, options, o);
   if (o.dry_run && forecast.empty()) return 0;
   if (o.air) return print(air_text(sim, scene));
@@ -377,7 +331,6 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);
   const std::unique_ptr<StateStore> store = join_or_open(o, sim, options, ranks);
   if (ranks && !ranks->leads()) return follow(scene, sim, options);
-  const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
   writer = std::make_unique<OutputWriter>(o.output, sim.output, notes_of(*scene), facts, options.biases);
   if (!sim.sources.any())

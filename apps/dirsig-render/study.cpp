@@ -68,17 +68,18 @@ struct Size {
 };
 Size size_of(const Simulation& sim) {
   Size size;
+  const Where where = sim.sensor_where.empty() ? Where{sim.path, 0, 0, {}, -1} : sim.sensor_where.back();
   for (const auto& sensor : sim.sensors)
     for (const Task& t : sensor->tasks())
       for (const Capture& c : t.captures) {
         const bool cells = c.bin_by == Capture::BinBy::escape;
         const size_t bands = sensor->bands(c.state).size() * (cells ? 1 : c.bins);
         if (size.bands && bands != size.bands)
-          throw Error("a study wants captures of the same number of bands", "study the sensors one by one");
+          throw Error(where, "a study wants captures of the same number of bands", "study the sensors one by one");
         size = {size.pixels + c.problems() * (cells ? c.bins : 1), bands};
       }
-  if (sim.sensors.size() > 1) throw Error("a study wants one sensor", "study the sensors one by one");
-  if (!size.pixels) throw Error("the simulation has no pixels to study");
+  if (sim.sensors.size() > 1) throw Error(where, "a study wants one sensor", "study the sensors one by one");
+  if (!size.pixels) throw Error(where, "the simulation has no pixels to study");
   return size;
 }
 

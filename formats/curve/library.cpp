@@ -10,6 +10,7 @@
 
 #include "base/files.h"
 #include "formats/curve/internal.h"
+#include "math/share.h"
 
 namespace suite {
 
@@ -213,9 +214,9 @@ std::vector<NamedRows> read_ems(const std::string& path, const CurveOptions& opt
       if (gap == std::string::npos || !number(std::string_view(lines[at]).substr(0, gap), w) ||
           !number(std::string_view(lines[at]).substr(gap), e) || !(w > 0))
         throw fault("a row that is not 'wavelength value'");
-      if (!(e >= -1e-9 && e <= 1 + 1e-9)) throw fault(strf("emissivity %g is not between 0 and 1", e));
+      if (!is_share(e)) throw fault(strf("emissivity %g is not between 0 and 1", e));
       x.push_back(newer ? w : 1e4 / w);  // the older layout counts wavenumbers in 1/cm
-      y.push_back(std::clamp(1 - e, 0.0, 1.0) * options.scale);
+      y.push_back(as_share(1 - e) * options.scale);
     }
     if (!newer && x.size() != 396) throw fault(strf("%zu of 396 rows", x.size()));
     if (x.empty()) throw fault("a curve without rows");

@@ -132,7 +132,7 @@ void SimulationWriter::read_clock(const Item& clock, Tree& instrument) {
   }
 }
 
-void SimulationWriter::read_image_file(const Item& image) {
+void SimulationWriter::read_image_file(const Item& image, const Item* detector_model) {
   if (const Item* base = image.find("basename")) base->mark(Fate::exact), image_ = base->value;
   if (const Item* end = image.find("extension")) end->mark(Fate::ignored, "images end in .img");
   Tree& output = root_.map_at("output", image.where);
@@ -144,7 +144,7 @@ void SimulationWriter::read_image_file(const Item& image) {
   if (const Item* type = image.find("datatype")) {
     const long long code = type->integer(1, 15);
     output.set("type", Tree::word(code == 5 ? "float64" : "float32", type->where));
-    if (code == 12)
+    if (code == 12 && detector_model)
       type->mark(Fate::converted, "counts stand in NAME_dn.img");
     else if (code != 4 && code != 5)
       type->mark(Fate::approximated, "float32");
@@ -155,7 +155,7 @@ void SimulationWriter::read_capture(const Item& method, Tree& made) {
   expect_word(method.find("@type"), {"simple", "raw"}, "taken as a simple capture");
   const Item* image = method.find("imagefile");
   const Item *flux = image ? image->find("@fluxunits") : nullptr, *area = image ? image->find("@areaunits") : nullptr;
-  if (image) read_image_file(*image);
+  if (image) read_image_file(*image, method.find("detectormodel"));
   double seconds = 0;
   if (const Item* integration = method.find("temporalintegration")) {
     const Item* tdi = integration->find("@tdi");
@@ -199,15 +199,21 @@ void SimulationWriter::read_capture(const Item& method, Tree& made) {
     if (const Item* item = method.find(key)) item->mark_all(Fate::ignored, "DIRSIG5 does not use it either");
   if (const Item* psf = method.find("psf")) psf->mark_all(Fate::unsupported, "images are sharp: give the array a psf");
   if (!read_detector(method, made) && counted_) {
-    // Electrons without noise: the response says how many a photon gives.
-    Tree& detector = made.set("detector", Tree::map(method.where));
-    detector.set("quantum_efficiency", Tree::number(1, method.where));
-    detector.set("gain_e_per_dn", Tree::number(1, method.where));
-    detector.set("shot_noise", Tree::flag(false, method.where));
+    // Electrons without noise and without a converter: the response says how many a photon gives.
+    made.set("detector", Tree::map(method.where)).set("quantum_efficiency", Tree::number(1, method.where));
   }
   if (Tree* detector = made.find("detector"); detector && fill_ != 1)
     detector->set("fill_factor", Tree::number(fill_, method.where));
 }
+
+namespace {
+
+void refuse_others(const Item& model) {
+  for (const char* key : {"darkcurrentdensity", "gain", "lut", "gainmodel"})
+    if (const Item* item = model.find(key)) item->mark_all(Fate::unsupported, "its unit or form is not public");
+}
+
+}  // namespace
 
 bool SimulationWriter::read_detector(const Item& method, Tree& made) {
   const Item* model = method.find("detectormodel");
@@ -225,13 +231,20 @@ bool SimulationWriter::read_detector(const Item& method, Tree& made) {
   const double least = number("minelectrons", -1e12, 1e12).value_or(0),
                most = number("maxelectrons", 0, 1e12).value_or(0);
   detector.set("quantum_efficiency", Tree::number(number("quantumefficiency", 0, 1).value_or(1), model->where));
-  detector.set("gain_e_per_dn", Tree::number(most > least ? (most - least) / (std::exp2(bits) - 1) : 1, model->where));
+  const auto noise = number("readnoise", 0, 1e12);
+  if (!(most > least)) {
+    for (const char* key : {"bitdepth", "minelectrons", "maxelectrons", "readnoise"})
+      if (const Item* item = model->find(key))
+        item->mark(Fate::unsupported, "without maxelectrons above minelectrons a count has no size: electrons alone");
+    refuse_others(*model);
+    return true;
+  }
+  detector.set("gain_e_per_dn", Tree::number((most - least) / (std::exp2(bits) - 1), model->where));
   detector.set("bits", Tree::number(bits, model->where));
   if (most > 0) detector.set("full_well_e", Tree::number(most, model->where));
-  if (const auto noise = number("readnoise", 0, 1e12)) detector.set("read_noise_e", Tree::number(*noise, model->where));
+  if (noise) detector.set("read_noise_e", Tree::number(*noise, model->where));
   if (least != 0) model->find("minelectrons")->mark(Fate::approximated, "counts begin at 0 electrons");
-  for (const char* key : {"darkcurrentdensity", "gain", "lut", "gainmodel"})
-    if (const Item* item = model->find(key)) item->mark_all(Fate::unsupported, "its unit or form is not public");
+  refuse_others(*model);
   return true;
 }
 

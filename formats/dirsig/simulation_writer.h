@@ -60,7 +60,7 @@ class SimulationWriter {
   void read_array(const Item& array, Tree& instrument, Tree& made);
   void read_clock(const Item& clock, Tree& instrument);
   void read_capture(const Item& method, Tree& made);
-  void read_image_file(const Item& image);
+  void read_image_file(const Item& image, const Item* detector_model);
   void read_truth(const Item& plane);
   bool read_detector(const Item& method, Tree& made);
   // response.cpp

@@ -4,6 +4,7 @@
 
 #include "base/files.h"
 #include "formats/dirsig/scene_writer.h"
+#include "math/share.h"
 
 namespace suite::dirsig {
 
@@ -53,7 +54,7 @@ CurveFile SceneWriter::mean_reflectance(const CurveFile& file, const Item& named
   }
   if (file.value.size() > 1 && (!named.fate() || *named.fate() < Fate::approximated))
     named.mark(Fate::approximated, strf("the mean of %zu curves where no texture map chooses", file.value.size()));
-  for (double& v : mean) v = std::clamp(1 - v, 0.0, 1.0);  // a mean of ones may round to more
+  for (double& v : mean) v = as_share(1 - v);
   made.wavelength_um.push_back(x);
   made.value.push_back(std::move(mean));
   return made;

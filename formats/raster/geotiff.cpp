@@ -81,6 +81,13 @@ double height_unit(GTIF* keys) {
   return 1;
 }
 
+// EPSG's vertical systems count from the sea or the geoid; 5001 to 5033 stood for ellipsoids in GeoTIFF 1.0.
+int vertical_system(GTIF* keys) {
+  unsigned short code = 0;
+  if (!GTIFKeyGetSHORT(keys, VerticalCSTypeGeoKey, &code, 0, 1) || code == KvUserDefined) return 0;
+  return code >= 1024 && !(code >= 5001 && code <= 5033) ? code : 0;
+}
+
 GeoReference read_georeference(const std::string& path) {
   const Where where{path, 0, 0, {}, -1};
   input_size(path);
@@ -104,6 +111,7 @@ GeoReference read_georeference(const std::string& path) {
     throw Error(where, "names no EPSG code in its GeoTIFF keys", "ProjectedCSType or GeographicType is needed");
   }
   ref.height_unit_m = height_unit(keys.get());
+  ref.vertical_epsg = vertical_system(keys.get());
   ref.no_data = no_data_of(tiff.get());
   return ref;
 }

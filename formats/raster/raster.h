@@ -36,8 +36,9 @@ std::vector<float> values_of(Raster&& raster, Numbers numbers);
 struct GeoReference {
   int epsg = 0;  // projected CRS code, or geographic one when `geographic`
   bool geographic = false;
-  double to_map[6];  // x = m[0] + m[1] column + m[2] row, y = m[3] + m[4] column + m[5] row
-                     // of pixel corners: (0, 0) = outer corner of the first pixel
+  double to_map[6];       // x = m[0] + m[1] column + m[2] row, y = m[3] + m[4] column + m[5] row
+                          // of pixel corners: (0, 0) = outer corner of the first pixel
+  int vertical_epsg = 0;  // of what the pixels count from where they are heights above the sea; 0: nothing is said
   std::optional<double> no_data;
   double height_unit_m = 1;  // of the pixels where they are heights, as the vertical keys say; 1 when they say nothing
 };

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/files.h"
+#include "base/placed.h"
 #include "formats/raster/raster.h"
 #include "formats/scene_text/reader.h"
 #include "scene/primitives.h"
@@ -117,7 +118,7 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
   if (const auto local = p.find("local")) {
     g.terrain.place = local_grid(*local);
   } else {
-    p.at("height");
+    p.at("height").kind();  // it must be there
     const GeoidRule rule = read_heights_rule(p);
     if (!draft_.origin.given)
       throw p.error("a georeferenced terrain needs the scene's 'origin'", "or 'local: {origin, gsd}'", "SP504");
@@ -126,10 +127,24 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
       throw Error(Where{path, 0, 0, {}, -1}, strf("its heights are in feet of %.7g m", ref.height_unit_m),
                   cure_of_feet(path, ref.height_unit_m), "SP504");
     g.terrain.georeferenced = true;
-    const auto system = map_system_of_epsg(ref.epsg);
-    if (!system || system->zone.has_value() == ref.geographic)
-      throw Error(Where{path, 0, 0, {}, -1}, strf("EPSG:%d is not known here", ref.epsg), known_systems(), "SP504");
-    g.terrain.place = georeferenced_grid(ref, on_earth(*system, rule));
+    const EarthMap map = earth_map(ref.epsg, Where{path, 0, 0, {}, -1});
+    if (map.geographic() != ref.geographic)
+      throw Error(Where{path, 0, 0, {}, -1}, strf("EPSG:%d is not of the kind that its keys say", ref.epsg),
+                  "a projected code for ProjectedCSType, one of angles for GeographicType", "SP504");
+    if (!rule.geoid && (ref.vertical_epsg || map.heights() == MapSystem::Heights::geoid))
+      report_.add(
+          "SP509", p.at("terrain").as_text(),
+          {p.at("terrain").where(), "its heights count from " +
+                                        (ref.vertical_epsg ? strf("EPSG:%d", ref.vertical_epsg) : map.heights_name()) +
+                                        ", and 'height: ellipsoid' takes them as they are"});
+    g.terrain.place = georeferenced_grid(ref, on_earth(map, rule));
+    if (!map.projection) return read_heights(p, g.terrain);
+    try {
+      g.terrain.place(0, 0, 0);  // how it gets there is told of a place
+    } catch (const Error& e) {
+      throw placed(e, p.at("terrain").where());
+    }
+    tell_projection(map, ref.epsg, p.at("terrain"));
   }
   read_heights(p, g.terrain);
 }

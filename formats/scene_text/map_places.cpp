@@ -40,10 +40,34 @@ Reader::GeoidRule Reader::read_heights_rule(const Params& p) {
   return rule;
 }
 
-std::function<Vec3(Vec3)> Reader::on_earth(const MapSystem& system, const GeoidRule& rule) const {
+Reader::EarthMap Reader::earth_map(int epsg, const Where& where) const {
+  if (const auto system = map_system_of_epsg(epsg)) return {system, nullptr};
+  try {
+    return {std::nullopt, std::make_shared<const MapProjection>(epsg)};
+  } catch (const Error& e) {
+    throw Error(where, strf("EPSG:%d is not known here, and ", epsg) + e.message(),
+                (e.hint().empty() ? "" : e.hint() + "; ") + known_systems(), "SP504");
+  }
+}
+
+void Reader::tell_projection(const EarthMap& map, int epsg, const Params& file) {
+  if (!map.projection) return;
+  report_.add("SP707", file.as_text(),
+              {file.where(), strf("EPSG:%d, '", epsg) + printable(map.projection->name()) + "', is brought to WGS84 " +
+                                 map.projection->told()});
+}
+
+std::function<Vec3(Vec3)> Reader::on_earth(const EarthMap& map, const GeoidRule& rule) const {
   const SceneFrame frame({draft_.origin.latitude_deg, draft_.origin.longitude_deg, draft_.origin.ellipsoid_height_m});
   const bool grid = rule.geoid && !rule.separation_m;
-  return enu_of_map(system, frame, rule.separation_m.value_or(0), grid ? geoid_ : std::nullopt);
+  if (map.system) return enu_of_map(*map.system, frame, rule.separation_m.value_or(0), grid ? geoid_ : std::nullopt);
+  const double separation = rule.separation_m.value_or(0);
+  return [=, by = map.projection, geoid = grid ? geoid_ : std::nullopt](Vec3 p) {
+    Geodetic g = by->geographic() ? by->place(p.y, p.x, p.z) : by->place(p.x, p.y, p.z);
+    check_geodetic(g);
+    g.height_m += geoid ? geoid->height_m(g.latitude_deg, g.longitude_deg) : separation;
+    return frame.enu_from_geodetic(g);
+  };
 }
 
 // What to do with other systems (NAD83, national grids): the program that warps to UTM around the origin.
@@ -69,24 +93,22 @@ std::function<Vec3(Vec3)> Reader::map_place(const Params& p, const std::string& 
   }
   std::optional<int> epsg = epsg_of_name(system);
   if (const auto given = p.find("epsg")) epsg = static_cast<int>(given->as_integer(1, 999999));
-  const auto known = epsg ? map_system_of_epsg(*epsg) : std::nullopt;
-  const std::string named = system.empty() ? "names no reference system" : "is in '" + printable(system) + "'";
-  if (!known)
-    throw file.error(
-        "'" + file.as_text() + "' " + (epsg ? strf("is in EPSG:%d, which is not known here", *epsg) : named),
-        "WGS84, ETRS89, JGD2011, geographic or UTM, are; or give 'local: [x, y, z]', what of its map is "
-        "the scene's origin",
-        "SP504");
+  if (!epsg)
+    throw file.error("'" + file.as_text() + "' " +
+                         (system.empty() ? "names no reference system" : "is in '" + printable(system) + "'"),
+                     "give 'epsg', or 'local: [x, y, z]', what of its map is the scene's origin", "SP504");
+  const EarthMap known = earth_map(*epsg, file.where());
   if (!draft_.origin.given)
     throw file.error("what is on a map needs the scene's 'origin'", "or 'local: [x, y, z]'", "SP504");
-  if (known->heights == MapSystem::Heights::geoid && !p.has("height"))
-    throw file.error(strf("heights of EPSG:%d count from the geoid", *epsg),
+  if (known.heights() == MapSystem::Heights::geoid && !p.has("height"))
+    throw file.error(strf("heights of EPSG:%d count from ", *epsg) + printable(known.heights_name()),
                      "say 'height: geoid', or 'ellipsoid' to take them as they are", "SP504");
   const GeoidRule rule = read_heights_rule(p);
-  if (known->heights == MapSystem::Heights::unknown && !p.has("height"))
+  if (known.heights() == MapSystem::Heights::unknown && !p.has("height"))
     tell(
         strf("EPSG:%d says nothing of heights; they are taken as above the ellipsoid ('height: geoid' if not)", *epsg));
-  const auto place = [on = on_earth(*known, rule), file](Vec3 v) {
+  tell_projection(known, *epsg, file);
+  const auto place = [on = on_earth(known, rule), file](Vec3 v) {
     try {
       return on(v);
     } catch (const Error& e) {
@@ -95,7 +117,7 @@ std::function<Vec3(Vec3)> Reader::map_place(const Params& p, const std::string& 
           e.hint(), "SP504");
     }
   };
-  if (known->zone || !longitude_first) return place;
+  if (!known.geographic() || !longitude_first) return place;
   return [place](Vec3 v) { return place({v.y, v.x, v.z}); };
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/files.h"
+#include "base/required.h"
 #include "formats/scene_text/reader.h"
 #include "formats/sqt/sqt.h"
 #include "optics/models.h"
@@ -100,7 +101,7 @@ void Reader::read_stored(const Params& p, ModelSpec& spec) {
 }
 
 void Reader::read_model(const Params& p, ModelSpec& spec) {
-  const Params model = p.at("model");
+  const Params model = required(p, "model", models().names());
   spec.model = model.as_text();
   const ModelRow& row = models().find(spec.model, model.where());
   for (const Parameter& parameter : row.parameters) {

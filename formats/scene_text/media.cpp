@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/files.h"
+#include "base/required.h"
 #include "formats/scene_text/reader.h"
 #include "formats/scene_text/transform.h"
 #include "scene/voxel_mesh.h"
@@ -44,7 +45,7 @@ void check_sum(const Params& p, const Curve& whole, const Curve& a, const Curve&
 }  // namespace
 
 void Reader::read_phase(const Params& p, ModelSpec& spec) {
-  const Params model = p.at("model");
+  const Params model = required(p, "model", phases().names());
   spec.model = model.as_text();
   for (const Parameter& parameter : phases().find(spec.model, model.where()).parameters) {
     const auto value = p.find(parameter.name);

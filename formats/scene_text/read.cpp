@@ -2,6 +2,7 @@
 #include <iterator>
 
 #include "base/files.h"
+#include "base/placed.h"
 #include "formats/scene_text/reader.h"
 #include "motion/time.h"
 #include "spectral/wavelength.h"
@@ -21,7 +22,7 @@ void Reader::item(const char* code, const Params& p, const std::function<void()>
   try {
     read();
   } catch (const Error& e) {
-    report_.add(e, draft_.file, code);
+    report_.add(placed(e, p.where()), draft_.file, code);  // what libraries refuse has no place of its own
     p.mark_read();
   }
 }

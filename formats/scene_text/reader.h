@@ -11,7 +11,7 @@
 #include "formats/raster/raster.h"
 #include "formats/scene_text/scene_text.h"
 #include "formats/voxel/voxel.h"
-#include "motion/map_system.h"
+#include "motion/map_projection.h"
 
 namespace suite {
 struct Raster;
@@ -100,10 +100,20 @@ class Reader {
     std::optional<double> separation_m;  // none: by the origin's grid
   };
   GeoidRule read_heights_rule(const Params& p);
+  // A system of maps: one of map_system.h, else one that PROJ knows.
+  struct EarthMap {
+    std::optional<MapSystem> system;
+    std::shared_ptr<const MapProjection> projection;  // where there is no system
+    bool geographic() const { return system ? !system->zone : projection->geographic(); }
+    MapSystem::Heights heights() const { return system ? system->heights : projection->heights(); }
+    std::string heights_name() const { return projection ? projection->heights_name() : "the geoid"; }
+  };
+  EarthMap earth_map(int epsg, const Where& where) const;
+  void tell_projection(const EarthMap& map, int epsg, const Params& file);
   std::string known_systems() const;
   std::function<Vec3(Vec3)> map_place(const Params& p, const std::string& system, const Params& file,
                                       bool longitude_first);
-  std::function<Vec3(Vec3)> on_earth(const MapSystem& system, const GeoidRule& rule) const;
+  std::function<Vec3(Vec3)> on_earth(const EarthMap& map, const GeoidRule& rule) const;
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
   DraftPlacement read_placement(const Params& p, bool world);

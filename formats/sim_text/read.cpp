@@ -129,6 +129,7 @@ Simulation read_simulation_tree(const Params& root, const std::string& path, con
       if (!(s >= 1e-6 && s <= 1e9)) throw p->at("size_m").error("the cell needs a positive size", "1e-6 to 1e9 m");
     if (sim.sources.earth) throw p->error("a scene that repeats itself has no earth under it", "drop one of them");
     sim.periodic = Periodic{{low[0], low[1]}, {size[0], size[1]}};
+    sim.periodic_where = p->where();
   }
   if (const auto output = root.find("output")) read_output(*output, sim.output);
   read_epoch(root, sim);

@@ -72,6 +72,7 @@ struct Simulation {
   std::string scene_path;  // of the first
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;
+  Where periodic_where;
   SourceSpecs sources;       // as written: dates, phases and clear skies are still to be resolved
   std::optional<Utc> epoch;  // of second 0: key `epoch`, or the sun's or the moon's date
   double dut1 = 0;           // s, UT1 - UTC at second 0

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "base/required.h"
 #include "base/run_app.h"
 #include "formats/curve/curve.h"
 #include "formats/ies/ies.h"
@@ -73,7 +74,7 @@ IntensityTable read_candela(const Params& file) {
 
 ModelSpec read_phase(const Params& p) {
   ModelSpec spec;
-  spec.model = p.text("model");
+  spec.model = required(p, "model", phases().names()).as_text();
   for (const Parameter& parameter : phases().find(spec.model, p.at("model").where()).parameters) {
     const auto value = p.find(parameter.name);
     if (!value) continue;

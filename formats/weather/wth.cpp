@@ -35,7 +35,8 @@ WeatherTable parse_wth(std::string_view text, const std::string& file, const Wea
     throw Error(Where{file, 1, 0, {}, -1}, "a .wth file names neither place, nor time zone, nor date",
                 "give site, UTC offset and the day of the first row");
   const LocalStamp first{options.date->year, options.date->month, options.date->day, 0};
-  if (!is_date(first)) throw Error(strf("there is no %d-%02d-%02d", first.year, first.month, first.day));
+  if (!is_date(first))
+    throw Error(Where{file, 1, 0, {}, -1}, strf("there is no %d-%02d-%02d", first.year, first.month, first.day));
   WeatherTable table;
   table.file = file;
   table.site = *options.site;

@@ -1,4 +1,5 @@
 #include "air/air_spec.h"
+#include "math/share.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,7 @@ void check_air(const AirSpec& spec) {
     if (!(c.top > c.base + 1 && c.top < top && c.content >= 0))
       throw Error(spec.where, strf("a cloud from %g to %g m with %g kg/m3", c.base, c.top, c.content),
                   "its top lies at least 1 m above its base and below the profile's top");
-  if (!(spec.ground_albedo.min() >= 0 && spec.ground_albedo.max() <= 1))
+  if (!is_share(spec.ground_albedo.min()) || !is_share(spec.ground_albedo.max()))
     throw Error(spec.where, "the albedo of the ground is not between 0 and 1");
   if (spec.refraction && !spec.round)
     throw Error(spec.where, "refraction bends beams in the air about a round Earth, and this one is flat",

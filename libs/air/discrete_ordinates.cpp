@@ -6,6 +6,7 @@
 
 #include "air/ordinate_state.h"
 #include "base/error.h"
+#include "math/share.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -38,7 +39,7 @@ void DiscreteOrdinates::State::check(const DiffuseProblem& problem) const {
       throw Error(strf("layer %zu of the air: %s", l, what), hint);
     };
     if (!(at.depth >= 0 && at.depth <= 1e9)) fail("its depth is out of range", "0 to 1e9");
-    if (!(at.albedo >= 0 && at.albedo <= 1)) fail("its albedo is out of range", "0 to 1");
+    if (!is_share(at.albedo)) fail("its albedo is out of range", "0 to 1");
     if (!finite(at.planck_top) || !finite(at.planck_bottom)) fail("negative emission", "0 or more");
     if (!at.moments.empty() && std::fabs(at.moments[0] - 1) > 1e-6) fail("its phase function is not 1", "chi_0 = 1");
     for (const double chi : at.moments)
@@ -59,23 +60,23 @@ void DiscreteOrdinates::State::check_beam(const DiffuseBeam& beam) const {
       throw Error(strf("layer %zu of the air: its secant of the beam is out of range", l),
                   "times the depth at least -100");
   for (size_t l = 0; l < beam.tops.size(); ++l)
-    if (!(beam.tops[l] <= 1))
+    if (!(as_share(beam.tops[l]) <= 1))
       throw Error(strf("layer %zu of the air: its transmittance of the beam is out of range", l), "at most 1");
 }
 
 void DiscreteOrdinates::State::scale_layer(const DiffuseLayer& from, int l) {
   ScaledLayer& to = layer[l];
-  const double known = static_cast<double>(from.moments.size());
+  const double known = static_cast<double>(from.moments.size()), albedo = as_share(from.albedo);
   const double forward = known > streams ? std::max(0.0, from.moments[streams]) : 0.0;
   to = {};
   to.true_depth = from.depth;
-  to.scale = 1 - from.albedo * forward;
+  to.scale = 1 - albedo * forward;
   to.depth = from.depth * to.scale;
   to.absorbed = 1;
   if (forward < 1 && to.scale > 0) {
-    to.albedo = from.albedo * (1 - forward) / to.scale;
-    to.absorbed = (1 - from.albedo) / to.scale;
-    to.single = from.albedo / to.scale;
+    to.albedo = albedo * (1 - forward) / to.scale;
+    to.absorbed = (1 - albedo) / to.scale;
+    to.single = albedo / to.scale;
   }
   to.planck_top = from.planck_top;
   to.planck_bottom = from.planck_bottom;
@@ -184,9 +185,9 @@ void DiscreteOrdinates::set_beam(const DiffuseBeam& beam) {
 }
 
 void DiscreteOrdinates::set_ground(double albedo, double emission) {
-  if (!(albedo >= 0 && albedo <= 1)) throw Error(strf("a ground of albedo %g", albedo), "0 to 1");
+  if (!is_share(albedo)) throw Error(strf("a ground of albedo %g", albedo), "0 to 1");
   if (!(emission >= 0 && emission < 1e300)) throw Error("a ground of negative emission");
-  state_->ground_albedo = albedo;
+  state_->ground_albedo = as_share(albedo);
   state_->ground_emission = emission;
   state_->couple_ground();
 }

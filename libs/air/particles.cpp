@@ -7,6 +7,7 @@
 #include "air/particle_tables.h"
 #include "air/phase_grid.h"
 #include "base/error.h"
+#include "math/share.h"
 #include "optics/phases/cosine_table.h"
 #include "optics/phases/henyey_greenstein.h"
 
@@ -71,6 +72,7 @@ void ParticleOptics::add(double extinction, double albedo, std::span<const doubl
   SUITE_CHECK(values.size() == phase_cosines().size());
   if (!(extinction >= 0 && std::isfinite(extinction)))
     throw Error(strf("particles: the extinction %g is negative or not finite", extinction));
+  albedo = as_share(albedo);
   if (!(albedo >= 0 && albedo <= 1)) throw Error(strf("particles: the albedo %g is outside 0 .. 1", albedo));
   for (const double p : values)
     if (!(p >= 0)) throw Error(strf("particles: the phase function has a value of %g", p), "values of at least 0");

@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/params_document.h"
+#include "base/required.h"
 
 namespace suite {
 
@@ -35,6 +36,55 @@ bool parse_double(const std::string& text, double& value) {
   return code == std::errc() && stop == end && std::isfinite(value);
 }
 
+// What the ending of a key says of its unit, in words; empty where it says nothing.
+std::string unit_of(std::string_view key) {
+  static constexpr std::pair<std::string_view, const char*> kUnits[] = {
+      {"_w_m2_k", "watt per square metre and kelvin"},
+      {"_j_m3_k", "joule per cubic metre and kelvin"},
+      {"_j_kg_k", "joule per kilogram and kelvin"},
+      {"_w_m_k", "watt per metre and kelvin"},
+      {"_w_m2", "watt per square metre"},
+      {"_kg_m3", "kilogram per cubic metre"},
+      {"_g_m3", "gram per cubic metre"},
+      {"_deg_s", "degree per second"},
+      {"_m_s", "metre per second"},
+      {"_deg", "degree"},
+      {"_urad", "microradian"},
+      {"_mrad", "milliradian"},
+      {"_rad", "radian"},
+      {"_percent", "percent"},
+      {"_ppm", "parts per million"},
+      {"_hpa", "hectopascal"},
+      {"_pa", "pascal"},
+      {"_hz", "hertz"},
+      {"_nm", "nanometre"},
+      {"_um", "micrometre"},
+      {"_mm", "millimetre"},
+      {"_cm", "centimetre"},
+      {"_km", "kilometre"},
+      {"_m2", "square metre"},
+      {"_m3", "cubic metre"},
+      {"_sr", "steradian"},
+      {"_du", "Dobson unit"},
+      {"_ms", "millisecond"},
+      {"_us", "microsecond"},
+      {"_h", "hour"},
+      {"_m", "metre"},
+      {"_s", "second"},
+      {"_k", "kelvin"},
+  };
+  for (const auto& [ending, unit] : kUnits)  // the longest first
+    if (key.ends_with(ending)) return unit;
+  return {};
+}
+
+// Refuses to read a key that is not there; hint: what would be right.
+void need(const Params& p, const Params::Node* node, const std::string& hint = {}) {
+  if (node->missing.empty()) return;
+  const std::string unit = unit_of(node->missing);
+  throw p.error("the key '" + node->missing + "'" + (unit.empty() ? "" : " (" + unit + ")") + " is missing", hint);
+}
+
 }  // namespace
 
 std::string fault_of_name(const std::string& name) {
@@ -48,7 +98,10 @@ std::string fault_of_name(const std::string& name) {
   return {};
 }
 
-Params::Kind Params::kind() const { return node_->kind; }
+Params::Kind Params::kind() const {
+  need(*this, node_);
+  return node_->kind;
+}
 Where Params::where() const { return document_->where(node_->line, node_->column); }
 Where Params::where(std::string_view key) const {
   const auto found = node_->index.find(key);
@@ -63,6 +116,7 @@ Error Params::error(std::string what, std::string hint, std::string code) const 
 }
 
 std::optional<Params> Params::find(std::string_view key) const {
+  need(*this, node_);
   if (node_->kind != Kind::map)
     throw error(strf("expected a map with the key '%.*s', found %s", static_cast<int>(key.size()), key.data(),
                      kind_name(node_->kind)));
@@ -75,6 +129,7 @@ std::optional<Params> Params::find(std::string_view key) const {
 }
 
 bool Params::has(std::string_view key) const {
+  need(*this, node_);
   if (node_->kind != Kind::map) return false;
   node_->asked.emplace(key);
   return node_->index.find(key) != node_->index.end();
@@ -92,23 +147,32 @@ std::optional<Error> Params::misspelt(std::string_view key) const {
 Params Params::at(std::string_view key) const {
   if (auto found = find(key)) return *found;
   if (const auto near = misspelt(key)) throw *near;
-  throw error("the key '" + std::string(key) + "' is missing");
+  // Told where it is read, which knows what it may be.
+  Node gone;
+  gone.line = node_->line, gone.column = node_->column, gone.missing = key;
+  return Params(document_, &document_->nodes.emplace_back(std::move(gone)));
 }
 
 std::vector<std::string> Params::keys() const {
+  need(*this, node_);
   if (node_->kind != Kind::map) throw error(strf("expected a map, found %s", kind_name(node_->kind)));
   std::vector<std::string> names;
   for (const Node::Entry& e : node_->entries) names.push_back(e.key);
   return names;
 }
 
-size_t Params::size() const { return node_->kind == Kind::map ? node_->entries.size() : node_->items.size(); }
+size_t Params::size() const {
+  need(*this, node_);
+  return node_->kind == Kind::map ? node_->entries.size() : node_->items.size();
+}
 Params Params::operator[](size_t i) const {
+  need(*this, node_, "a list");
   if (node_->kind != Kind::list) throw error(strf("expected a list, found %s", kind_name(node_->kind)));
   if (i >= node_->items.size()) throw error(strf("expected at least %zu items, found %zu", i + 1, node_->items.size()));
   return Params(document_, node_->items[i]);
 }
 std::vector<Params> Params::items() const {
+  need(*this, node_, "a list");
   std::vector<Params> all;
   if (node_->kind == Kind::scalar || node_->kind == Kind::map) all.push_back(*this);
   for (const Node* item : node_->items) all.push_back(Params(document_, item));
@@ -116,6 +180,7 @@ std::vector<Params> Params::items() const {
 }
 
 std::string Params::as_text() const {
+  need(*this, node_);
   if (node_->kind != Kind::scalar) throw error(strf("expected a text, found %s", kind_name(node_->kind)));
   for (const char c : node_->scalar)
     if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' && c != '\r') || c == 0x7f)
@@ -123,12 +188,14 @@ std::string Params::as_text() const {
   return node_->scalar;
 }
 std::string Params::as_name() const {
+  need(*this, node_, "a name");
   const std::string name = as_text();
   if (const std::string fault = fault_of_name(name); !fault.empty())
     throw error("the name " + fault + "; it becomes part of file names", kGoodName);
   return name;
 }
 double Params::as_number() const {
+  need(*this, node_, "a number");
   double value = 0;
   if (node_->kind != Kind::scalar || !parse_double(node_->scalar, value))
     throw error(strf("expected a finite number, found %s", node_->kind == Kind::scalar
@@ -139,12 +206,15 @@ double Params::as_number() const {
   return value;
 }
 double Params::as_number_in(double low, double high, const char* unit) const {
+  need(*this, node_, strf("give a value from %g to %g%s%s", low, high, *unit ? " " : "", unit));
   const double value = as_number();
   if (!(value >= low && value <= high))
-    throw error(strf("%g is outside the valid range", value), strf("give a value from %g to %g %s", low, high, unit));
+    throw error(strf("%g is outside the valid range", value),
+                strf("give a value from %g to %g%s%s", low, high, *unit ? " " : "", unit));
   return value;
 }
 long long Params::as_integer(long long low, long long high) const {
+  need(*this, node_, strf("give a whole number from %lld to %lld", low, high));
   const double value = as_number();
   if (value != std::floor(value)) throw error("expected a whole number, found " + node_->scalar);
   const auto outside = [&] {
@@ -164,6 +234,7 @@ long long Params::as_integer(long long low, long long high) const {
   return whole;
 }
 bool Params::as_bool() const {
+  need(*this, node_, "true or false");
   const std::string text = node_->kind == Kind::scalar ? node_->scalar : "";
   if (text == "true" || text == "yes" || text == "on") return true;
   if (text == "false" || text == "no" || text == "off") return false;
@@ -173,23 +244,27 @@ size_t Params::as_choice(std::initializer_list<const char*> names) const {
   return as_choice(std::vector<std::string>(names.begin(), names.end()));
 }
 size_t Params::as_choice(const std::vector<std::string>& known) const {
+  need(*this, node_, choices_text(known));
   const std::string text = as_text();
   for (size_t i = 0; i < known.size(); ++i)
     if (known[i] == text) return i;
   throw error("'" + text + "' is none of the choices here", name_hint(text, known));
 }
 std::vector<double> Params::as_numbers() const {
+  need(*this, node_, "a list of numbers");
   std::vector<double> values;
   if (node_->kind != Kind::list) throw error(strf("expected a list of numbers, found %s", kind_name(node_->kind)));
   for (const Params& item : items()) values.push_back(item.as_number());
   return values;
 }
 std::array<double, 3> Params::as_vec3() const {
+  need(*this, node_, "three numbers");
   const std::vector<double> v = as_numbers();
   if (v.size() != 3) throw error(strf("expected three numbers, found %zu", v.size()));
   return {v[0], v[1], v[2]};
 }
 std::array<double, 3> Params::as_direction() const {
+  need(*this, node_, "three numbers, not all 0");
   const std::array<double, 3> v = as_vec3();
   const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   if (!(largest >= 1 / kLargestNumber)) throw error("a direction of no length", "three numbers, not all 0");
@@ -197,6 +272,7 @@ std::array<double, 3> Params::as_direction() const {
   return {v[0] / length, v[1] / length, v[2] / length};
 }
 std::string Params::as_path() const {
+  need(*this, node_, "the name of a file");
   std::string path = resolve_path(file(), as_text());
   std::vector<std::string>& all = document_->paths;
   if (std::find(all.begin(), all.end(), path) == all.end()) all.push_back(path);
@@ -217,9 +293,6 @@ double Params::number(std::string_view key, double otherwise) const {
   return found ? found->as_number() : otherwise;
 }
 double Params::number_in(std::string_view key, double low, double high, const char* unit) const {
-  if (!has(key) && !misspelt(key))
-    throw error("the key '" + std::string(key) + "' is missing",
-                strf("give a value from %g to %g %s", low, high, unit));
   return at(key).as_number_in(low, high, unit);
 }
 double Params::number_in(std::string_view key, double low, double high, const char* unit, double otherwise) const {

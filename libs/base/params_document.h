@@ -19,6 +19,7 @@ struct Params::Node {
   int line = 0, column = 0;  // line -n: column of the n-th setting
   std::string scalar;
   bool quoted = false;
+  std::string missing;  // the key of one that must be there and is not; line and column are those of its map
   std::vector<const Node*> items;
   std::vector<Entry> entries;
   std::map<std::string, size_t, std::less<>> index;  // key -> entry

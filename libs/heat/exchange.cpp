@@ -133,7 +133,8 @@ double change_in_kelvin(const Histories& before, size_t row, std::span<const dou
   for (size_t m = 0; m < answer.size(); ++m) {
     const double after = answer[m];
     if (!(after > 0 && after < INFINITY))
-      throw Error(strf("coupled elements answer with an emitted flux of %g W/m2", after), "positive and finite");
+      throw Error(strf("an element of a surface would emit %g W/m2 at moment %zu of the span", after, m),
+                  "a shorter step_s, or layers that hold more heat");
     largest = std::fmax(largest, std::fabs(kelvin_of(std::fmax(before.at(row, m), 0.0)) - kelvin_of(after)));
   }
   return largest;

@@ -284,12 +284,15 @@ void SlabBatch::estimate_error(size_t block, double dt, const FaceEnds& faces) {
 }
 
 void SlabBatch::keep_means(size_t block) {
+  constexpr double kVanished = 1e-3;  // K: Newton's method looked for a temperature below 0 K
   const size_t n = nodes();
   const Lanes *now = &now_[block * n], *end = &end_[block * n];
   for (size_t l = 0; l < kLanes && block * kLanes + l < elements_; ++l) {
     const size_t e = block * kLanes + l;
     top_mean_[e] = kW * (now[0].get(l) + middle_[0].get(l)) + kD * end[0].get(l);
     bottom_mean_[e] = kW * (now[n - 1].get(l) + middle_[n - 1].get(l)) + kD * end[n - 1].get(l);
+    const double coldest = std::min({middle_[0].get(l), middle_[n - 1].get(l), end[0].get(l), end[n - 1].get(l)});
+    if (!(coldest > kVanished)) end_[block * n].set(l, NAN);  // told by keep_estimates
   }
 }
 
@@ -342,9 +345,7 @@ void SlabBatch::accept(double dt) {
 
 void SlabBatch::step(double dt, const BatchLoads& loads) {
   SUITE_CHECK(dt > 0 && std::isfinite(dt));
-  if (!std::isfinite(attempt(dt, loads)))
-    throw Error(strf("slabs find no temperatures after a step of %g s from %.9g s", dt, t_), "shorter steps");
-  accept(dt);
+  std::isfinite(attempt(dt, loads)) ? accept(dt) : step_in_parts(dt);
 }
 
 void SlabBatch::advance(double t, const BatchLoads& loads, const StepControl& control, std::vector<double>* steps) {

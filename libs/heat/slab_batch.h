@@ -58,7 +58,8 @@ class SlabBatch {
   void rest() { std::vector<Lanes>().swap(end_); }
   void set_kelvin(size_t element, size_t node, double kelvin);
 
-  // One step (s, > 0) of all elements. Error: loads that are not finite, or negative where they must not be.
+  // One step (s, > 0) of all elements; one after which an element would hold less than no heat is taken in parts.
+  // Error: loads that are not finite, or negative where they must not be; no temperature above 0 K.
   void step(double dt, const BatchLoads& loads);
   // Goes on to time t with steps whose largest estimate of all elements keeps to `control`; appends them to `steps`
   // when given. Error: as advance_by_error.
@@ -154,6 +155,7 @@ class SlabBatch {
   void step_newton(size_t block, double dt, const FaceEnds& faces);
   double attempt(double dt, const BatchLoads& loads);  // into end_; the largest estimate
   void accept(double dt);
+  void step_in_parts(double dt);  // of the lines of the last attempt
 
   std::vector<SlabLayer> layers_;
   size_t elements_;

@@ -6,6 +6,7 @@
 
 #include "air/molecules.h"
 #include "light/layer_optics.h"
+#include "math/share.h"
 #include "optics/phase_function.h"
 
 namespace suite {
@@ -111,7 +112,8 @@ class Layered final : public Atmosphere {
     if (const auto& a = s.aerosol) {
       if (!(a->depth_550 >= 0) || !std::isfinite(a->depth_550)) throw Error("the aerosol's optical depth is negative");
       if (!(a->scale_height > 0)) throw Error("the aerosol's scale height must be positive");
-      if (a->albedo.min() < 0 || a->albedo.max() > 1) throw Error("the aerosol's albedo is not between 0 and 1");
+      if (!is_share(a->albedo.min()) || !is_share(a->albedo.max()))
+        throw Error("the aerosol's albedo is not between 0 and 1");
     }
     for (const AtmosphereSpec::Gas& g : s.gases) {
       if (!g.layers.empty() && g.layers.size() != layers)

@@ -94,7 +94,7 @@ size_t time_steps_for(const MovingFrame& frame, std::span<const double> kinks, T
     if (high >= kMostSteps)
       throw Error(strf("a moving body of radius %g m needs more than a million steps in %g s", radius,
                        window.end - window.begin),
-                  "give a larger bound or a shorter window");
+                  "a shorter exposure, or a slower motion");
     high = std::min(2 * high - 1, kMostSteps);
   }
   while (high - low > 1) {

@@ -1,5 +1,6 @@
 #include "optics/models.h"
 
+#include "math/share.h"
 #include "optics/models/rows.h"
 
 namespace suite {
@@ -16,6 +17,21 @@ const Registry<ModelRow>& models() {
 void check_model(ModelSpec& spec, const Where& where) {
   check_parameters(spec, models().find(spec.model, where).parameters, "model", where);
 }
+
+namespace {
+
+// Values that were computed, as one minus another, may be off by rounding.
+Curve without_rounding(const Curve& c) {
+  if (c.min() >= 0 && c.max() <= 1) return c;
+  if (c.is_constant()) return Curve::constant(as_share(c.min()));
+  std::vector<double> y = c.value();
+  for (double& v : y) v = as_share(v);
+  return Curve(c.wavelength_um(), std::move(y), c.outside());
+}
+
+bool is_a_share(const Parameter& p) { return p.low == 0 && p.high == 1; }
+
+}  // namespace
 
 void check_parameters(ModelSpec& spec, std::span<const Parameter> parameters, const char* what, const Where& where) {
   const std::string of = std::string(what) + " '" + spec.model + "'";
@@ -41,6 +57,9 @@ void check_parameters(ModelSpec& spec, std::span<const Parameter> parameters, co
                   p.summary + (p.unit.empty() || p.unit == "1" ? "" : " [" + p.unit + "]"), "OP104");
     if (!given && p.kind == Parameter::Kind::number) spec.numbers[p.name] = p.otherwise;
     if (!given && p.kind == Parameter::Kind::curve) spec.curves[p.name] = Curve::constant(p.otherwise);
+    if (is_a_share(p) && p.kind == Parameter::Kind::number) spec.numbers[p.name] = as_share(spec.numbers.at(p.name));
+    if (is_a_share(p) && p.kind == Parameter::Kind::curve)
+      spec.curves[p.name] = without_rounding(spec.curves.at(p.name));
     if (p.kind == Parameter::Kind::number) check_range(of, p, spec.numbers.at(p.name), where, "OP103");
     if (p.kind == Parameter::Kind::curve) {
       check_range(of, p, spec.curves.at(p.name).min(), where, "OP103");

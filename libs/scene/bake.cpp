@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/placed.h"
 #include "motion/track.h"
 #include "scene/baker.h"
 #include "scene/curvature.h"
-#include "scene/endless_media.h"
 #include "scene/origin_check.h"
 #include "scene/presence.h"
 #include "scene/unfolded.h"
@@ -30,25 +30,15 @@ Scene Baker::run() {
   scene_.epoch = draft_.epoch;
   const TimeSpan times = time_window();
   if (report_.count(Severity::error) == 0) {
-    scene_.bounds = scene_bounds(scene_, times.begin, times.end);
+    try {
+      scene_.bounds = scene_bounds(scene_, times.begin, times.end);
+    } catch (const Error& e) {
+      throw placed(e, draft_.times ? draft_.times->where : Where{draft_.file, 0, 0, {}, -1});
+    }
     tell_endless_media();
+    tell_shared_faces(time_of_all(scene_));
   }
   return std::move(scene_);
-}
-
-void Baker::tell_endless_media() {
-  for (const EndlessMedium& e : endless_media(scene_, draft_.windows)) {
-    const auto surface =
-        std::find_if(draft_.geometry.begin(), draft_.geometry.end(), [&](auto& g) { return g.name == e.surface; });
-    const std::string often =
-        std::isinf(e.scatterings) ? "without ever being absorbed" : strf("about %.0f times", e.scatterings);
-    const Where nowhere = e.surface.empty() ? draft_.ambient.where : Where{draft_.file, 0, 0, {}, -1};
-    add("SP607", surface == draft_.geometry.end() ? nowhere : surface->where,
-        "medium '" + e.medium +
-            (e.surface.empty() ? std::string("' fills all space that no body fills")
-                               : "' fills half of all space behind '" + e.surface + "'") +
-            ": what does not come back scatters " + often + (e.at_um > 0 ? strf(" at %g um", e.at_um) : ""));
-  }
 }
 
 Baker::Built Baker::build_mesh(const DraftGeometry& g) {

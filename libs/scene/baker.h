@@ -66,6 +66,7 @@ class Baker {
   TimeSpan time_window();
   void unused();
   void tell_endless_media();
+  void tell_shared_faces(double time);
 
   const Draft& draft_;
   Report& report_;

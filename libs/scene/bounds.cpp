@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/placed.h"
 #include "motion/track.h"
 #include "scene/presence.h"
 #include "scene/primitives.h"
@@ -40,16 +41,22 @@ namespace {
 
 // Where a box comes along on its way, sampled so that no corner is more than 1 % of the box off: from kink to kink, as
 // what rests for a day may be gone in seconds.
-Box3 swept(const Box3& box, const Track& track, TimeSpan span) {
+Box3 swept(const Box3& box, const SceneTrack& of, TimeSpan span) {
   if (box.empty()) return {};
+  const Track& track = *of.track;
   const double radius = length(box.size()) / 2 + length(box.center());
   std::vector<double> times = track.kinks(span);
   times.insert(times.begin(), span.begin), times.push_back(span.end);
   Box3 all;
   for (size_t k = 0; k + 1 < times.size(); ++k) {
     const TimeSpan part{times[k], times[k + 1]};
-    for (const Affine3& key : time_keys(track, part, time_steps_for(track, part, radius, 0.01 * radius + 1e-9)))
-      all.grow(transformed(box, key));
+    size_t steps = 0;
+    try {
+      steps = time_steps_for(track, part, radius, 0.01 * radius + 1e-9);
+    } catch (const Error& e) {
+      throw placed(e, {}, "the motion of " + of.name + ": ");
+    }
+    for (const Affine3& key : time_keys(track, part, steps)) all.grow(transformed(box, key));
   }
   return all;
 }
@@ -69,14 +76,14 @@ Box3 scene_bounds(const Scene& s, double begin, double end) {
                                                       : primitives[p.target];
       const Box3 placed = transformed(box, p.to_parent);
       const Presence there = presence(s, p.track, p.schedule, {}, {begin, end});
-      if (there.any) groups[g].grow(p.track == kNone ? placed : swept(placed, *s.tracks[p.track].track, there.hull));
+      if (there.any) groups[g].grow(p.track == kNone ? placed : swept(placed, s.tracks[p.track], there.hull));
     }
   Box3 all = groups.empty() ? Box3{} : groups.front();
   for (const Volume& v : s.volumes) {
     const VoxelGrid& g = s.grids[v.grid];
     const Box3 placed = transformed(Box3{{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}},
                                     v.to_world * g.to_local);
-    all.grow(v.track == kNone ? placed : swept(placed, *s.tracks[v.track].track, {begin, end}));
+    all.grow(v.track == kNone ? placed : swept(placed, s.tracks[v.track], {begin, end}));
   }
   return all;
 }

@@ -20,6 +20,12 @@ inline PipelineOptions suited(const Sensor& sensor, PipelineOptions options) {
   return options;
 }
 
+// Error: a capture that asks for many suns at once, where the sun's light is spread by media or air.
+inline void check_many_suns(const Sensor& sensor, const Capture& capture, const Kit& kit) {
+  if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
+    throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
+}
+
 struct Primed {
   Primed(std::shared_ptr<const Tracer> t, Kit k, const Sensor& sensor, size_t sensor_state,
          const PipelineOptions& options)

@@ -272,8 +272,7 @@ class Job {
     const size_t bakes = kits_->optics_bakes();
     Kit kit = kits_->get(item.state.spectral, sensor, capture, tracer_);
     log.new_optics = kits_->optics_bakes() > bakes;
-    if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
-      throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
+    check_many_suns(sensor, capture, kit);
     if (options_.diagnose)
       for (const Diagnostic& d :
            diagnose_light_paths(*tracer_, sources_, *kit.optics, options_.pipeline, goals_of(item).all.max_paths))

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "math/share.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -104,20 +105,38 @@ NoiseAtBackground noise_at_background(const DetectorSpec& d, double signal, doub
   return n;
 }
 
+namespace {
+
+// Without a step of the converter there is nothing that noise and limits could be seen in.
+void refuse_without_counts(const Params& p) {
+  for (const char* key :
+       {"dark_current_e_s", "read_noise_e", "full_well_e", "bias_dn", "bits", "shot_noise", "prnu",
+        "dark_nonuniformity", "dead_fraction", "hot_fraction", "bad_pixels", "seed", "background_k", "netd_k"})
+    if (p.has(key))
+      throw Error(p.where(key), std::string("'") + key + "' shows in counts alone, and there are none",
+                  "gain_e_per_dn, electrons per count");
+}
+
+}  // namespace
+
 std::optional<DetectorSpec> read_detector(const Params& params, const SensorContext& context) {
   const auto p = params.find("detector");
   if (!p) return std::nullopt;
   DetectorSpec d;
   const Params qe = p->at("quantum_efficiency");
   d.quantum_efficiency = context.curve(qe);
-  if (d.quantum_efficiency.min() < 0 || d.quantum_efficiency.max() > 1)
+  if (!is_share(d.quantum_efficiency.min()) || !is_share(d.quantum_efficiency.max()))
     throw qe.error("the quantum efficiency leaves 0..1", "electrons per photon");
   constexpr double many = 1e12;
   d.fill_factor = p->number_in("fill_factor", 1e-6, 1, "(share of the pitch's area)", 1);
+  d.gain = p->number_in("gain_e_per_dn", 1e-9, many, "electrons per count", 0);
+  if (!d.counts()) {
+    refuse_without_counts(*p);
+    return d;
+  }
   d.dark_current = p->number_in("dark_current_e_s", 0, many, "electrons/s", 0);
   d.read_noise = p->number_in("read_noise_e", 0, many, "electrons", 0);
   d.full_well = p->number_in("full_well_e", 0, many, "electrons", 0);
-  d.gain = p->number_in("gain_e_per_dn", 1e-9, many, "electrons per count");
   d.bias = p->number_in("bias_dn", 0, 65535, "counts", 0);
   d.bits = static_cast<int>(p->integer("bits", 1, 16, 16));
   d.shot_noise = p->boolean("shot_noise", true);

@@ -24,7 +24,7 @@ struct DetectorSpec {
   double dark_current = 0;   // electrons/s
   double read_noise = 0;     // electrons, standard deviation
   double full_well = 0;      // electrons; 0 = no limit
-  double gain = 1;           // electrons per count, > 0
+  double gain = 0;           // electrons per count; 0 = no converter: signal electrons alone, without noise
   double bias = 0;           // counts
   int bits = 16;             // 1..16
   bool shot_noise = true;
@@ -36,6 +36,7 @@ struct DetectorSpec {
   // Of thermal instruments: K, a blackbody that fills the view, 0 = not one; and the noise-equivalent temperature
   // difference against it that is to be met, 0 = as the other terms make it.
   double background = 0, netd = 0;
+  bool counts() const { return gain > 0; }
 };
 
 // Noise-equivalent temperature difference (NEDT, NETD): temporal noise against a blackbody that fills the view.
@@ -50,7 +51,7 @@ struct NoiseAtBackground {
 // what the other terms make.
 NoiseAtBackground noise_at_background(const DetectorSpec& spec, double signal, double slope, double exposure);
 
-// Reads key `detector`; nothing when absent.
+// Reads key `detector`; nothing when absent. Error: what only counts can show, without `gain_e_per_dn`.
 std::optional<DetectorSpec> read_detector(const Params& params, const SensorContext& context);
 
 // 1/sr: irradiance on the focal plane = radiance / G#. throughput: 0..1 of the optics; obscuration: share of the
@@ -76,8 +77,9 @@ class Detector {
     uint16_t counts = 0;
     bool clipped = false;  // by the full well or an end of the converter; what always gives 0 or full scale is not
   };
-  // One read-out: signal electrons (before the detector's own response), exposure time (s) and a number that
-  // tells this read-out from all others. more: electrons, standard deviation of noise beside that of the spec.
+  // One read-out of a detector that counts: signal electrons (before the detector's own response), exposure time (s)
+  // and a number that tells this read-out from all others. more: electrons, standard deviation of noise beside that of
+  // the spec.
   Reading read(double electrons, double exposure, const Character& of, uint64_t read_out, double more = 0) const;
   // Signal electrons as they are told from counts: bias and mean dark current taken off.
   double signal_of(double counts, double exposure) const {

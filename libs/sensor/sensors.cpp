@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/required.h"
 #include "sensor/kinds/rows.h"
 #include "spectral/wavelength.h"
 
@@ -37,7 +38,7 @@ Registry<SensorRow>& sensor_kinds() {
 }
 
 std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& context) {
-  const std::string kind = params.text("kind");
+  const std::string kind = required(params, "kind", sensor_kinds().names()).as_text();
   const SensorRow& row = sensor_kinds().find(kind, params.at("kind").where());
   try {
     return row.make(params, context);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "math/share.h"
 #include "spectral/planck.h"
 #include "thermal/slab.h"
 
@@ -18,7 +19,7 @@ void check_face(const SlabFace& f, const char* which) {
     return;
   }
   if (!f.loads) throw Error(name + " has no loads");
-  if (!(f.emissivity >= 0 && f.emissivity <= 1)) throw Error(name + strf(": emissivity %g", f.emissivity), "0 to 1");
+  if (!is_share(f.emissivity)) throw Error(name + strf(": emissivity %g", f.emissivity), "0 to 1");
   for (const double h : {f.convection_still, f.convection_wind})
     if (!(h >= 0 && h <= 1e6)) throw Error(name + strf(": convection %g W/(m2 K)", h), "0 or more");
 }

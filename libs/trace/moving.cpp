@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/placed.h"
 #include "motion/track.h"
 #include "trace/arrange.h"
 #include "trace/embree_internal.h"
@@ -41,6 +42,24 @@ bool MovingPart::there(uint32_t object, double time) const {
   return world.there(world.flat.objects[object].node, std::clamp(time, window.begin, window.end));
 }
 
+namespace {
+
+// Error: more than can be held, with the motion's name, which says where it is written.
+size_t steps_of(const World& world, uint32_t node, const MovingFrame& frame, TimeSpan span, double radius,
+                double bound) {
+  try {
+    return time_steps_for(frame, {}, span, radius, bound);
+  } catch (const Error& e) {
+    std::string names;
+    for (uint32_t n = node; n != kNone; n = world.flat.nodes[n].parent)
+      if (const uint32_t track = world.flat.nodes[n].track; track != kNone)
+        names += (names.empty() ? "" : " in that of ") + world.scene->tracks[track].name;
+    throw placed(e, {}, "the motion of " + names + ": ");
+  }
+}
+
+}  // namespace
+
 MovingPart::Keys MovingPart::keys_of(const World& world, TimeSpan whole, uint32_t node, double radius) {
   Keys keys;
   keys.radius = radius;
@@ -63,7 +82,7 @@ MovingPart::Keys MovingPart::keys_of(const World& world, TimeSpan whole, uint32_
   const MovingFrame frame = [&](double t) { return world.pose(node, t); };
   for (size_t i = 0; i + 1 < std::max<size_t>(times.size(), 2); ++i) {
     const TimeSpan span{times[i], times[std::min(i + 1, times.size() - 1)]};
-    const std::vector<Affine3> poses = time_keys(frame, span, time_steps_for(frame, {}, span, radius, bound));
+    const std::vector<Affine3> poses = time_keys(frame, span, steps_of(world, node, frame, span, radius, bound));
     keys.stretches.push_back({span.begin, span.end, keys.poses.size(), poses.size()});
     keys.poses.insert(keys.poses.end(), poses.begin(), poses.end());
   }

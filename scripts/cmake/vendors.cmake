@@ -67,6 +67,16 @@ else()
   message(STATUS "assimp was not found: .fbx, .dae and .3ds files will be refused")
 endif()
 
+# Optional: systems of maps beside WGS84, ETRS89 and JGD2011.
+find_path(PROJ_INCLUDE proj.h)
+find_library(PROJ_LIBRARY proj)
+if(PROJ_INCLUDE AND PROJ_LIBRARY)
+  suite_vendor(proj ${PROJ_LIBRARY})
+  target_include_directories(vendor_proj SYSTEM INTERFACE ${PROJ_INCLUDE})
+else()
+  message(STATUS "PROJ was not found: maps of other systems than WGS84, ETRS89 and JGD2011 will be refused")
+endif()
+
 # Optional: runs on several machines. Of C++ only the C calls are used.
 set(MPI_CXX_SKIP_MPICXX ON)
 find_package(MPI COMPONENTS CXX)

@@ -5,6 +5,7 @@
 // elementary).
 #include <cmath>
 
+#include "math/share.h"
 #include "optics/models/cosine_lobe.h"
 #include "optics/models/rows.h"
 
@@ -21,7 +22,7 @@ class OrenNayar final : public CosineLobe {
     double most = 0;
     for (int deg = 0; deg <= 900; ++deg) most = std::max(most, albedo(std::cos(deg * 0.1 * kDegree)));
     for (const float r : rho_)
-      if (r * most > 1)
+      if (as_share(r * most) > 1)
         throw Error(strf("model 'oren_nayar': reflectance %g with sigma %g returns up to %.4f of the light", r,
                          spec.numbers.at("sigma"), r * most),
                     strf("the model is not bounded; reflectance up to %.4f is possible", 1 / most));

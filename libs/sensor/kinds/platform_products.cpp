@@ -93,6 +93,7 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
     thermometers.emplace_back(segment.bands[bands + b]);
   }
   kelvin.bands = counts.bands = electrons.bands;
+  if (!d.counts()) counts.values.clear();
   const Capture& capture = spec.tasks[result.task].captures[result.capture];
   for (size_t i = 0; i < n; ++i) {
     const Exposed from = exposed(spec, capture, i);
@@ -108,12 +109,13 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
         signal += result.radiance[(i * result.channels * result.bins + t) * result.bands + bands + b] /
                   static_cast<double>(result.bins);
       signal *= factor * segment.electrons[b];
+      electrons.values[i * bands + b] = signal;
+      if (!d.counts()) continue;
       const uint64_t own = hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column);
       Detector::Character character = detector.character(own);
       character.dead = character.dead || bad;
       const Detector::Reading read = detector.read(signal, exposure, character, hash_of(own, read_out, i), more[b]);
       if (read.clipped) result.quality[i] |= quality_clipped;
-      electrons.values[i * bands + b] = signal;
       counts.values[i * bands + b] = read.counts;
       if (!thermometers.empty())
         kelvin.values[i * bands + b] =
@@ -124,7 +126,7 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
   keep_bands(result, bands);
   std::vector<Product> out;
   out.push_back(std::move(electrons));
-  out.push_back(std::move(counts));
+  if (d.counts()) out.push_back(std::move(counts));
   if (!thermometers.empty()) out.push_back(std::move(kelvin));
   return out;
 }

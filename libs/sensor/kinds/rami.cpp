@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 
+#include "math/share.h"
 #include "sensor/kinds/simple.h"
 
 namespace suite {
@@ -45,8 +46,9 @@ class Rami final : public SimpleSensor {
       if (!(e > 0)) throw p.at("irradiance").error("the sun's irradiance must be positive in every band");
     if (const auto ground = p.find("ground_reflectance")) {
       ground_reflectance_ = in_bands(*ground);
-      for (const double r : ground_reflectance_)
-        if (!(r >= 0 && r <= 1)) throw ground->error("the ground's reflectance is not between 0 and 1 in every band");
+      for (double& r : ground_reflectance_)
+        if (r = as_share(r); !is_share(r))
+          throw ground->error("the ground's reflectance is not between 0 and 1 in every band");
     }
     planes_ = {true, true};
     if (const auto planes = p.find("planes")) {

@@ -39,6 +39,7 @@ class Dirsig : public ProgramsTest<Dirsig> {
           return x < 0.6 || x > 0.9 ? 0 : x < 0.7 ? 0.4 * (x - 0.6) / 0.1 : 0.4 - 0.3 * (x - 0.7) / 0.2;
         }};
     const std::vector<double> counted = image(name + "_electrons.img");
+    EXPECT_FALSE(file_exists(*folder_ / (name + "_dn.img"))) << "nothing says what a count is";
     for (size_t i = 0; i < counted.size(); ++i)
       ASSERT_NEAR(counted[i] / electrons(radiance, responses[i % 3]), 1, 1e-4) << i;
   }

@@ -61,5 +61,19 @@ TEST_F(PolarCrater, TheShadowIsAsWarmAsItsWallMakesIt) {
   EXPECT_GT(sunlit, 300);
 }
 
+// Two millimetres of dust alone, at a latitude where the sun sets steeply: within a step of an hour they would lose
+// more heat than they hold, and the search ended with an element that emits 0 W/m2.
+TEST_F(PolarCrater, ASkinOfDustLosesItsSun) {
+  std::string weather = read_text(folder_ / "space.csv");
+  weather.replace(weather.find("site: 88"), 8, "site: 20");
+  write_file(folder_ / "space.csv", std::string_view(weather));
+  const CommandResult r =
+      run("scene-prep scene.yaml -o scene.h5 --set 'materials.regolith.thermal={layers: [{thickness_m: 0.002, "
+          "density_kg_m3: 1100, specific_heat_j_kg_k: 400, conductivity_w_m_k: 0.001}]}' --set origin.latitude_deg=20");
+  ASSERT_EQ(r.code, 0) << r.err;
+  render("skin", "--heat-only --set heat.elements=60 --set heat.paths=64 --set heat.step_s=3600");
+  EXPECT_TRUE(file_exists(folder_ / "skin/heat.h5"));
+}
+
 }  // namespace
 }  // namespace suite

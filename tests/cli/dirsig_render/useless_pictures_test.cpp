@@ -175,8 +175,10 @@ TEST_F(UselessPictures, DryRunsRefuseWhatRunsRefuse) {
   const CommandResult dry = run("dirsig-render sim.yaml --dry-run"), real = run("dirsig-render sim.yaml -o none");
   EXPECT_EQ(real.code, 1);
   EXPECT_EQ(dry.code, 1) << dry.out;
+  ASSERT_THAT(real.err, HasSubstr("sim.yaml:4:"));
+  EXPECT_THAT(dry.err, testing::EndsWith(real.err.substr(real.err.find("sim.yaml:4:")))) << "the same message";
   EXPECT_THAT(dry.err, HasSubstr("sim.yaml:4:"));
-  EXPECT_THAT(dry.err, HasSubstr("sensor 'eye', 1.575 to 1.625 um ('pan'): material 'ground'"));
+  EXPECT_THAT(dry.err, HasSubstr("band 'pan' of sensor 'eye' reaches from 1.575 to 1.625 um; material 'ground' has"));
 }
 
 }  // namespace

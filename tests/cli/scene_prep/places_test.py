@@ -193,8 +193,8 @@ class Cities(unittest.TestCase):
             code, said = scene(begin, ", height: geoid")
             self.assertEqual(code, 0, said)
             self.assertAlmostEqual(exported()[0][..., 2].min() - low, raised, delta=5e-3)
-        code, said = scene(origin, ", epsg: 28992")
-        self.assertIn("EPSG:28992, which is not known here", said)
+        code, said = scene(origin, ", epsg: 999999")
+        self.assertIn("EPSG:999999 is not known here, and PROJ ", said)
 
 
 def geoid(path, height):

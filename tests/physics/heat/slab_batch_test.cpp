@@ -54,6 +54,31 @@ TEST(SlabBatch, LeadShieldBetweenPlates) {
   EXPECT_NEAR(0.48 * (black(773.15) - black(batch.top(0))), 4762.20, 0.5);
 }
 
+// A thin sheet without air that loses its sun holds less heat than the losses of that moment would take within a long
+// step: C dT/dt = -sigma T^4, so T^-3 = T0^-3 + 3 sigma t / C. Beside it dust of the same heat, against steps of 10 s.
+TEST(SlabBatch, SkinThatLosesItsSun) {
+  const FaceBalance dark{0, 0, kStefanBoltzmann};
+  const double C = 0.002 * 1100 * 400, t = 3600;
+  SlabBatch sheet({uniform(0.002, 1100, 400, 50)}, 1);
+  sheet.start(0, 380);
+  sheet.step(t, steady({{dark, {}}}));
+  const double closed = std::cbrt(1 / (std::pow(380.0, -3) + 3 * kStefanBoltzmann * t / C));
+  EXPECT_NEAR(sheet.top(0), closed, 1) << "without parts it is 0 K";
+  EXPECT_EQ(sheet.time(), t);
+  SlabBatch dust({uniform(0.002, 1100, 400, 0.001)}, 1), finely = dust;
+  for (SlabBatch* b : {&dust, &finely}) b->start(0, 380);
+  dust.step(t, steady({{dark, {}}}));
+  run(finely, steady({{dark, {}}}), 10, 360);
+  EXPECT_NEAR(dust.top(0), finely.top(0), 1);
+  EXPECT_NEAR(dust.bottom(0), finely.bottom(0), 1);
+  // Steps that need no parts take none.
+  SlabBatch slow({uniform(0.2, 1100, 400, 0.1)}, 1);
+  slow.start(0, 380);
+  slow.step(t, steady({{dark, {}}}));
+  EXPECT_EQ(slow.counters().steps, 1);
+  EXPECT_GT(dust.counters().steps, 1);
+}
+
 // Flux that sets in on a thick solid: 2 F sqrt(t / pi) / inertia (Carslaw & Jaeger, Conduction of heat in solids, 2.9).
 TEST(SlabBatch, StepOfFluxOnAThickSolid) {
   const double F = 500, inertia = std::sqrt(1.5 * 2.1e6);

@@ -1,5 +1,6 @@
 // Files of DIRSIG from any editor, with what nobody knows, more often than once, or with other numbers: the same text
 // of ours, another one, one message with its place, or an account that says what is lost.
+#include <cstdlib>
 #include <map>
 #include <regex>
 #include <set>
@@ -41,15 +42,19 @@ class DirsigOddFiles : public testing::Test {
   }
   std::string fault_of(const std::string& top) {
     try {
-      read(top);
+      made_ = read(top);
     } catch (const Error& e) {
       return e.what();
     }
     return "";
   }
   std::string fate(const std::string& end) const { return fate_of(import_->ledger(), end); }
+  // One place in four is tried, SUITE_LONG tries all.
+  bool tried() { return std::getenv("SUITE_LONG") || places_++ % 4 == 0; }
   TempFolder folder_;
   std::unique_ptr<dirsig::Import> import_;
+  std::string made_;  // by fault_of() where there is none
+  size_t places_ = 0;
 };
 
 using Change = std::function<std::string(std::string)>;
@@ -154,6 +159,7 @@ TEST_F(DirsigOddFiles, ShowWhatNobodyKnows) {
       const bool xml = before.find('<') < 2;
       const std::regex spot(xml ? "<[a-zA-Z_]+[^<>/]*>" : "\\{[ \t]*\r?\n");
       for (std::sregex_iterator at(before.begin(), before.end(), spot), end; at != end; ++at) {
+        if (!tried()) continue;
         std::string text = before;
         text.insert(static_cast<size_t>(at->position() + at->length()),
                     xml ? "<zzq a=\"1\"><zzr>2</zzr></zzq>" : "ZZQ {\n ZZR = 6\n}\n");
@@ -173,7 +179,7 @@ TEST_F(DirsigOddFiles, ShowWhatNobodyKnows) {
       }
       write(name, before);
     }
-  EXPECT_GT(shown, size_t{150});
+  EXPECT_GT(shown, size_t{37});
 }
 
 // A number that is said to hold holds: another one makes another text.
@@ -197,13 +203,13 @@ TEST_F(DirsigOddFiles, EveryNumberCountsOrIsToldNotTo) {
       for (std::sregex_iterator at(before.begin(), before.end(), number), end; at != end; ++at) {
         const int group = (*at)[1].matched ? 1 : (*at)[2].matched ? 2 : 3;
         const auto value = dirsig::number_in_text((*at)[group].str());
-        if (!value) continue;
+        if (!value || !tried()) continue;
         const size_t from = static_cast<size_t>(at->position(group)), length = static_cast<size_t>(at->length(group));
         const bool whole = (*at)[group].str().find('.') == std::string::npos;
         const std::string other = whole ? strf("%.0f", *value + 1) : strf("%g", *value == 0 ? 0.37 : *value * 1.37);
         write(name, std::string(before).replace(from, length, other));
         if (!fault_of(top).empty()) continue;
-        if (read(top) != plain) {
+        if (made_ != plain) {
           ++counted;
           continue;
         }
@@ -218,8 +224,8 @@ TEST_F(DirsigOddFiles, EveryNumberCountsOrIsToldNotTo) {
       write(name, before);
     }
   }
-  EXPECT_GT(counted, size_t{120});
-  EXPECT_GT(told, size_t{10});
+  EXPECT_GT(counted, size_t{30});
+  EXPECT_GT(told, size_t{2});
 }
 
 TEST_F(DirsigOddFiles, HaveUnitsOfTheirOwn) {

@@ -94,6 +94,20 @@ TEST_F(DirsigSimulation, RadianceSaysItsFactor) {
   EXPECT_NE(note.find("DIRSIG's value is 0.001 times it"), std::string::npos) << note;  // 0.1 um in 0.01 s
 }
 
+// Electrons are what is asked for; counts need a detector model that says how many electrons one is.
+TEST_F(DirsigSimulation, CountsNeedADetectorModel) {
+  const auto detector = [&] { return array(read("plane.sim")).at("detector"); };
+  EXPECT_EQ(detector().number("quantum_efficiency"), 1);
+  EXPECT_FALSE(detector().has("gain_e_per_dn"));
+  const std::string sizeless = "<detectormodel><quantumefficiency>0.5</quantumefficiency><bitdepth>12</bitdepth>";
+  change("camera.platform", "</capturemethod>", sizeless + "</detectormodel></capturemethod>");
+  EXPECT_EQ(detector().number("quantum_efficiency"), 0.5);
+  EXPECT_FALSE(detector().has("gain_e_per_dn"));
+  EXPECT_EQ(fate_of(import_->ledger(), "detectormodel/bitdepth"), "unsupported");
+  change("camera.platform", sizeless, sizeless + "<minelectrons>0</minelectrons><maxelectrons>8190</maxelectrons>");
+  EXPECT_EQ(detector().number("gain_e_per_dn"), 2);  // 8190 electrons in 2^12 - 1 steps
+}
+
 TEST_F(DirsigSimulation, OneRowWithAClockIsAStrip) {
   change("camera.platform", "<yelementcount>6<", "<yelementcount>1<");
   const Params line = array(read("plane.sim")).at("readout");

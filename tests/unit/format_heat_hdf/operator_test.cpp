@@ -46,7 +46,7 @@ size_t files_in(const std::string& folder) {
 
 void other_weather(bool moving) {
   const TempFolder folder;
-  const SearchedScene s(1500, moving);
+  const SearchedScene s(600, moving);
   const std::string path = folder / "heat_operator.h5";
   write_operator(path, s.found(), s.identity(), "a test");
   expect_same(s.found(), s.stored(path, s.identity()));
@@ -73,7 +73,7 @@ struct Ended {};
 
 void ended_search(bool moving) {
   const TempFolder folder;
-  const SearchedScene s(1500, moving);
+  const SearchedScene s(600, moving);
   const HeatOperator whole = s.found();
   const size_t faces = s.kit.faces->size();
   const std::string pieces_folder = folder / "pieces";
@@ -107,7 +107,7 @@ void ended_search(bool moving) {
 
 TEST(HeatOperatorHdf, AnEndedSearchGoesOn) { ended_search(false); }
 TEST(HeatOperatorHdf, SoItDoesWhereThingsMove) {
-  const SearchedScene s(1500, true);
+  const SearchedScene s(600, true);
   const HeatOperator found = s.found();
   EXPECT_GT(found.exchange.rows.size(), found.exchange.faces());  // some faces see it
   EXPECT_LT(found.exchange.rows.size(), 2 * found.exchange.faces());
