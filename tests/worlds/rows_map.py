@@ -92,8 +92,8 @@ def opacity(d, material):
 
 SHADING = {"without": ("reciprocal",)}  # normals that are not the surface's are not reciprocal
 ROWS = [
-    ("class_map", "map", class_map), ("mixture", "map", mixture), ("curve_index", "map", curve_index), ("texture", "map", texture, {"without": ("moved", "periodic")}),  # pixels of one value are ranked by where they are
+    ("class_map", "map", class_map, {"weight": 1.2}), ("mixture", "map", mixture, {"weight": 1.2}), ("curve_index", "map", curve_index, {"weight": 1.6}), ("texture", "map", texture, {"weight": 3, "without": ("moved", "periodic")}),  # pixels of one value are ranked by where they are
    
-    ("cube", "map", cube), ("temperature_map", "map", temperature), ("bump", "map", bump, SHADING), ("normal_map", "map", normal, SHADING),
+    ("cube", "map", cube, {"weight": 1.5}), ("temperature_map", "map", temperature, {"weight": 1.8}), ("bump", "map", bump, {"weight": 1.8, **SHADING}), ("normal_map", "map", normal, {"weight": 1.6, **SHADING}),
     ("opacity", "map", opacity),
 ]
