@@ -35,7 +35,7 @@ def hung(d, material, spec):
 
 def grey(d, material):
     """A material with a reflectance that maps can vary, as warm as the one that is given."""
-    warm = {k: v for k, v in material.items() if k.startswith("temperature")}
+    warm = {k: v for k, v in material.items() if k.startswith(("temperature", "thermal"))}
     return {"model": "lambert" if "reciprocal" in d.traits else d.one("lambert", "mirror"), "reflectance": d.u(0.1, 0.8), **warm} if d.chance(0.7) else \
         {"model": "oren_nayar", "reflectance": d.u(0.1, 0.8), "sigma": 0.3, **warm}
 
