@@ -347,12 +347,19 @@ def switches(world, rng):
     return world, kind
 
 
+def without_bounds(o):
+    return "plane" in o and not o["plane"]["width"] or "box" in o and "x0" not in o["box"]
+
+
 def periodic_copies(world, rng):
     """A scene that repeats itself, and twice as much of it that does."""
     partner, size = world, world.sim["periodic"]["size_m"][0]
     partner.sim["periodic"] = {"origin_m": [-size / 2, -size / 2], "size_m": [2 * size, size]}
-    whole = partner.add("groups", "cell", partner.scene["world"])
-    partner.scene["world"] = [{"place": whole}, {"place": whole, "translate": [size, 0, 0]}]
+    endless = [p for p in partner.scene["world"] if without_bounds(partner.scene["objects"].get(p["place"], {}))]  # once: two holes in one place are fewer
+    whole = partner.add("groups", "cell", [p for p in partner.scene["world"] if p not in endless])
+    partner.scene["world"] = endless + [{"place": whole}, {"place": whole, "translate": [size, 0, 0]}]
+    if not partner.scene["groups"][whole]:
+        partner.scene["world"] = endless
     partner.scene["volumes"] += [{**v, "translate": [v["translate"][0] + size, *v["translate"][1:]]} for v in partner.scene["volumes"]]
     partner.sim["lamps"] += [{**lamp, "position_m": [lamp["position_m"][0] + size, *lamp["position_m"][1:]]} for lamp in partner.sim["lamps"] if "position_m" in lamp]
     return partner, "two cells"

@@ -10,7 +10,7 @@ from rows import TABLE
 from world import draw_world
 
 
-FLOOR = 1e-8                   # of the level of light; glow of cold air in visible light is 1e-30 of it, and has no bins of its own
+FLOOR = 0.1                    # of the level of light; times the tolerance 1e-5: what is below 1e-4 of the light has no bins of its own (SENSORS.md)
 KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between its seeds
 PILOT, MOST = 3, 64            # times the relation's paths
 SECONDS, START = 0.12, 0.04    # of CPU that the paths of a term take, and what starting takes

@@ -236,6 +236,8 @@ def draw_world(seed, traits, table, paths=4):
     d.rng.shuffle(slots)
     for slot in slots[:d.one(2, 3, 3, 4)]:
         place_thing(d, slot)
+    if not d.world.scene["world"]:  # volumes alone are no scene
+        d.place(d.world.add("objects", "o", {"sphere": {"radius": 0.3}, "material": d.opaque()}), translate=[0, 0, 0.5])
     add_lights(d)
     for k in range(d.one(1, 2, 2)):
         cameras = k == 0 and "wants_camera" in traits
