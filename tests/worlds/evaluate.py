@@ -12,6 +12,7 @@ from world import draw_world
 
 FLOOR = 0.1                    # of the level of light; times the tolerance 1e-5: what is below 1e-4 of the light has no bins of its own (SENSORS.md)
 KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between its seeds
+LEAST_MORE = {2: 2, 3: 4}      # times the paths of the screening, however long it takes: means of few paths are not normal
 PILOT, MOST = 3, 64            # times the relation's paths
 SECONDS, START = 0.12, 0.04    # of CPU that the paths of a term take, and what starting takes
 
@@ -78,6 +79,14 @@ def factor_of(programs, case, folder, seed, fixed):
     return (PILOT, pilot, spent / PILOT) if factor < 2 * PILOT else (factor, None, spent / PILOT)
 
 
+def seconds_of_paths(programs, folder, world, seed, factor, seconds):
+    """CPU that once the relation's paths take, without what tables take that are made first; seconds: with that."""
+    programs.prepare(world, folder, 4 * factor)
+    before = cpu_seconds()
+    programs.render(folder, seed * 16)
+    return max((cpu_seconds() - before - seconds * factor) / (3 * factor), 1e-4)
+
+
 def judged(programs, case, folder, first_seed, fixed=None):
     """-> Finding of the last step taken, which that was (4: fails), and the factor of its paths."""
     factor, pilot, seconds = factor_of(programs, case, folder, first_seed, fixed)
@@ -85,8 +94,9 @@ def judged(programs, case, folder, first_seed, fixed=None):
     if found.p > judge.SCREEN:
         return found, 1, factor
     seen, score = found.seen, found.score
+    each = seconds_of_paths(programs, os.path.join(folder, "term0"), case.terms[0][1], first_seed, factor, seconds)
     for step, seeds, more, bound, most in ((2, judge.RETEST_SEEDS, judge.RETEST_PATHS, judge.RETEST, 10), (3, judge.FINAL_SEEDS, judge.FINAL_PATHS, judge.FINAL, 60)):
-        paths = max(1, min(factor * more, int(most / (seconds * seeds * len(case.terms)))))
+        paths = max(factor * LEAST_MORE[step], min(factor * more, int(most / (each * seeds * len(case.terms)))))
         runs = pictures_of(programs, case, folder, range(first_seed + 100 * step, first_seed + 100 * step + seeds), paths)
         again = judge.by_seeds(case, runs)
         again.seen, again.score = seen, score
