@@ -48,9 +48,11 @@ class Shells {
   }
   // A point at this height: the one on the vertical of the point of height zero above the centre.
   Vec3 above_zero(double height) const { return zero_ + Vec3{0, 0, height}; }
-  // Cosine of a direction with the local vertical of a point, whose height is known.
+  // Cosine of a direction with the local vertical of a point, whose height is known. 0 at the centre, where every line
+  // is at its lowest point.
   double cosine(Vec3 p, double height, Dir d) const {
-    return (d.z + curvature_ * dot(p - zero_, d)) / (1 + curvature_ * height);
+    const double radius = 1 + curvature_ * height;
+    return radius > 0 ? (d.z + curvature_ * dot(p - zero_, d)) / radius : 0;
   }
   // Least height on a straight segment; distance may be infinite (minus infinity where a flat world is left downwards).
   double lowest_height(Vec3 from, Dir d, double distance) const;

@@ -130,7 +130,8 @@ def pane(d):
 
 def body(d):
     """A closed body of a medium: haze or glass. -> placements, (medium, index) in it."""
-    row = d.pick("body")
+    rough = any(m.get("model") == "ggx_dielectric" for m in d.world.scene["materials"].values())  # each index has tables, which take time
+    row = d.pick("body", lambda r: not rough or "reciprocal" in d.traits or not r.name.startswith("rough_")) or d.pick("body")
     return row.make(d)
 
 

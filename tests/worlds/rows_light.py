@@ -68,6 +68,8 @@ def clear_sky(d):
 
 def sky_furnace(d):
     d.world.sim["sky"] = {"radiance": d.blackbody_curve(), "full_sphere": True}
+    if d.chance(0.5):  # an even table is asked for on purpose, at every place; without one the sky is met by chance alone
+        d.world.sim["sky"]["table"] = [[1, 1], [1, 1]]
 
 
 def lamp(kind):
