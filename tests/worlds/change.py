@@ -56,6 +56,8 @@ def body_of_the_same(world, rng):
     if not hosts:
         return None
     medium, place, size, refracts = rng.choice(hosts)
+    if not refracts and rng.random() < 0.4:
+        return hidden_body(world, rng, medium, place, size)
     same = world.add("media", "same", dict(scene["media"][medium])) if rng.random() < 0.5 else medium
     kind = rng.choice(("boundary", "boundary with outside", "dielectric") if refracts else ("boundary", "boundary with outside"))
     spec = {"inside": same}
@@ -66,6 +68,17 @@ def body_of_the_same(world, rng):
     o = closed_object(world, rng, world.add("materials", "same", spec), size)
     world.scene["world"].append({"place": o, "translate": place})
     return world, f"a body of '{medium}' in it: {kind}"
+
+
+def hidden_body(world, rng, medium, place, size):
+    """A body of a lower priority within one of a higher changes nothing, whatever it is of."""
+    scene = world.scene
+    if scene.get("ambient") == medium:  # gives way to any body
+        return None
+    spec = {"absorption": rng.uniform(0.5, 3), "scattering": rng.uniform(0, 2), "priority": scene["media"][medium].get("priority", 0) - 1}
+    o = closed_object(world, rng, world.add("materials", "hidden", {"inside": world.add("media", "hidden", spec)}), size)
+    scene["world"].insert(rng.randrange(len(scene["world"]) + 1), {"place": o, "translate": place})
+    return world, f"a hidden body in '{medium}'"
 
 
 def bystander(world, rng):
@@ -174,6 +187,45 @@ def move_sensor(s, moved, phi, degrees, shift):
     if s["kind"] == "platform":
         s["motion"]["position_m"] = moved(s["motion"]["position_m"])
         s["motion"]["heading_deg"] = (s["motion"]["heading_deg"] - degrees) % 360
+
+
+def scaled(world, rng):
+    """The whole world some times as large, with matter as many times thinner and lamps with the square of the light: the same pictures."""
+    scene, sim = world.scene, world.sim
+    factor = rng.choice((1e-3, 0.1, 0.37, 3.0, 10.0, 1e3))
+    if any("leaves" in m or "water" in m for m in scene["media"].values()) or any(m["type"] == "bump" for m in scene["maps"].values()):
+        return None  # in metres of their own
+    for m in scene["media"].values():
+        for key in ("absorption", "scattering", "extinction"):
+            if key in m:
+                m[key] = times_number(m[key], 1 / factor)
+    for m in scene["maps"].values():
+        if "drape" in m:
+            m["drape"].update(origin=[c * factor for c in m["drape"]["origin"]], gsd=m["drape"]["gsd"] * factor)
+    place = {"place": world.add("groups", "whole", scene["world"]), "scale": factor}
+    scene["world"] = [place]
+    for v in scene["volumes"]:
+        v.update(scale=factor * v.get("scale", 1), translate=[c * factor for c in v["translate"]])
+    for lamp in sim["lamps"]:
+        if "position_m" in lamp:
+            lamp.update(position_m=[c * factor for c in lamp["position_m"]], intensity=lamp["intensity"] * factor ** 2)
+    for s in sim["sensors"]:
+        for c in [s, *s.get("collectors", [])]:
+            for key in ("position_m", "look_at_m", "center_m"):
+                if key in c:
+                    c[key] = [x * factor for x in c[key]]
+        for key in ("gsd_m", "height_m"):
+            if key in s:
+                s[key] *= factor
+        if s["kind"] == "platform":
+            m = s["motion"]
+            m["position_m"] = [x * factor for x in m["position_m"]]
+            if "speed_m_s" in m:
+                m["speed_m_s"] *= factor
+            for i in s["instruments"]:
+                if "focus_distance_m" in i:
+                    return None  # the aperture stays as wide
+    return world, f"{factor} times as large"
 
 
 def regroup(world, rng):
@@ -295,12 +347,19 @@ def switches(world, rng):
     return world, kind
 
 
+def without_bounds(o):
+    return "plane" in o and not o["plane"]["width"] or "box" in o and "x0" not in o["box"]
+
+
 def periodic_copies(world, rng):
     """A scene that repeats itself, and twice as much of it that does."""
     partner, size = world, world.sim["periodic"]["size_m"][0]
     partner.sim["periodic"] = {"origin_m": [-size / 2, -size / 2], "size_m": [2 * size, size]}
-    whole = partner.add("groups", "cell", partner.scene["world"])
-    partner.scene["world"] = [{"place": whole}, {"place": whole, "translate": [size, 0, 0]}]
+    endless = [p for p in partner.scene["world"] if without_bounds(partner.scene["objects"].get(p["place"], {}))]  # once: two holes in one place are fewer
+    whole = partner.add("groups", "cell", [p for p in partner.scene["world"] if p not in endless])
+    partner.scene["world"] = endless + [{"place": whole}, {"place": whole, "translate": [size, 0, 0]}]
+    if not partner.scene["groups"][whole]:
+        partner.scene["world"] = endless
     partner.scene["volumes"] += [{**v, "translate": [v["translate"][0] + size, *v["translate"][1:]]} for v in partner.scene["volumes"]]
     partner.sim["lamps"] += [{**lamp, "position_m": [lamp["position_m"][0] + size, *lamp["position_m"][1:]]} for lamp in partner.sim["lamps"] if "position_m" in lamp]
     return partner, "two cells"

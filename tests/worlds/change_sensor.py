@@ -74,9 +74,9 @@ def swapped(world, rng):
     made = []
     for lamp, receiver in ((a, b), (b, a)):
         w = world.copy()
-        for piece in [*w.scene["materials"].values(), *w.scene["media"].values()]:  # what is warm shines as well
-            piece.pop("temperature_k", None)
-            piece.pop("temperature", None)
+        for piece in [*w.scene["materials"].values(), *w.scene["media"].values()]:  # what is warm shines as well; water always, so the lamp is bright
+            for key in ("temperature_k", "temperature", "thermal"):
+                piece.pop(key, None)
             piece["maps"] = [m for m in piece.get("maps", []) if w.scene["maps"][m]["type"] != "temperature"]
             if not piece["maps"]:
                 del piece["maps"]
@@ -85,7 +85,7 @@ def swapped(world, rng):
         keys = {k: w.sim["sensors"][0][k] for k in ("bands", "spectral_error", "truth") if k in w.sim["sensors"][0]}
         if not keys.get("bands"):
             keys = {**{k: w.sim["sensors"][0]["instruments"][0]["arrays"][0][k] for k in ("bands", "spectral_error")}, "truth": []}
-        w.sim["lamps"] = [{"kind": "point", "position_m": lamp, "intensity": 100}]
+        w.sim["lamps"] = [{"kind": "point", "position_m": lamp, "intensity": 1e6}]
         w.sim["sensors"] = [{"kind": "point", "name": "flux", "paths": 128 * world.facts["paths"], **keys,
                              "collectors": [{"name": "e", "quantity": "actinic_flux", "position_m": receiver}]}]
         made.append(w)

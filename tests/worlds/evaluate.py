@@ -10,9 +10,11 @@ from rows import TABLE
 from world import draw_world
 
 
+FLOOR = 0.1                    # of the level of light; times the tolerance 1e-5: what is below 1e-4 of the light has no bins of its own (SENSORS.md)
 KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between its seeds
-PILOT, MOST = 2, 64            # times the relation's paths
-SECONDS, START = 0.15, 0.09    # of CPU that a term takes, and of those what starting takes
+LEAST_MORE = {2: 2, 3: 4}      # times the paths of the screening, however long it takes: means of few paths are not normal
+PILOT, MOST = 3, 64            # times the relation's paths
+SECONDS, START = 0.12, 0.04    # of CPU that the paths of a term take, and what starting takes
 
 
 @dataclass
@@ -43,14 +45,20 @@ def draw(seed, relation, table=TABLE):
 
 
 def case_of(world, relation, seed):
-    return relation.make(world.copy(), random.Random(f"relation {seed}"))
+    case = relation.make(world.copy(), random.Random(f"relation {seed}"))
+    if case:
+        case.floor = FLOOR * world.facts["level"]
+        case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0))
+    return case
 
 
 def pictures_of(programs, case, folder, seeds, factor=1, pilot=None):
-    """-> for each seed a list, a term each, of {sensor: Picture}. pilot: those of the first term, if they are there."""
+    """-> for each seed a list, a term each, of {sensor: Picture}. pilot: those of the first term, if they are there.
+
+    All terms have the same seed: what takes the same paths has the same noise, which cancels. judge.py does not count on it."""
     terms = []
     for k, (_, world, *names) in enumerate(case.terms):
-        runs = pilot if pilot and k == 0 else programs.pictures(world, os.path.join(folder, f"term{k}"), [s * 16 + k for s in seeds], factor)
+        runs = pilot if pilot and k == 0 else programs.pictures(world, os.path.join(folder, f"term{k}"), [s * 16 for s in seeds], factor)
         renamed = names[0] if names else {}
         terms.append([{renamed.get(n, n): p for n, p in run.items()} for run in runs])
     for others in terms[1:]:
@@ -63,11 +71,20 @@ def factor_of(programs, case, folder, seed, fixed):
     """-> times the relation's paths that take about SECONDS a term, pictures of the first term if it took them."""
     if fixed:
         return fixed, None, 0.05
+    programs.prepare(case.terms[0][1], os.path.join(folder, "term0"), PILOT)
     before = cpu_seconds()
-    pilot = programs.pictures(case.terms[0][1], os.path.join(folder, "term0"), [seed * 16], PILOT)
+    pilot = [programs.render(os.path.join(folder, "term0"), seed * 16)]
     spent = max(cpu_seconds() - before - START, 0.005)
     factor = min(MOST, int(PILOT * SECONDS / spent))
     return (PILOT, pilot, spent / PILOT) if factor < 2 * PILOT else (factor, None, spent / PILOT)
+
+
+def seconds_of_paths(programs, folder, world, seed, factor, seconds):
+    """CPU that once the relation's paths take, without what tables take that are made first; seconds: with that."""
+    programs.prepare(world, folder, 4 * factor)
+    before = cpu_seconds()
+    programs.render(folder, seed * 16)
+    return max((cpu_seconds() - before - seconds * factor) / (3 * factor), 1e-4)
 
 
 def judged(programs, case, folder, first_seed, fixed=None):
@@ -77,8 +94,9 @@ def judged(programs, case, folder, first_seed, fixed=None):
     if found.p > judge.SCREEN:
         return found, 1, factor
     seen, score = found.seen, found.score
+    each = seconds_of_paths(programs, os.path.join(folder, "term0"), case.terms[0][1], first_seed, factor, seconds)
     for step, seeds, more, bound, most in ((2, judge.RETEST_SEEDS, judge.RETEST_PATHS, judge.RETEST, 10), (3, judge.FINAL_SEEDS, judge.FINAL_PATHS, judge.FINAL, 60)):
-        paths = max(1, min(factor * more, int(most / (seconds * seeds * len(case.terms)))))
+        paths = max(factor * LEAST_MORE[step], min(factor * more, int(most / (each * seeds * len(case.terms)))))
         runs = pictures_of(programs, case, folder, range(first_seed + 100 * step, first_seed + 100 * step + seeds), paths)
         again = judge.by_seeds(case, runs)
         again.seen, again.score = seen, score
@@ -90,6 +108,7 @@ def judged(programs, case, folder, first_seed, fixed=None):
 
 def evaluate(programs, seed, relation, folder, fixed=None):
     before = cpu_seconds()
+    programs.forget()
     result = Result(str(seed), relation.name)
     try:
         world, case = draw(seed, relation)
@@ -125,6 +144,7 @@ def known(programs, name, make, reported, folder, seeds=6):
     """-> Result of a known fault: judged by seeds at once."""
     before, result = cpu_seconds(), Result(name, "known")
     try:
+        programs.forget()
         case = make()
         result.note, result.worlds, programs.warnings = make.__doc__, len(case.terms), {}
         found = judge.by_seeds(case, pictures_of(programs, case, folder, range(1, 1 + seeds)))

@@ -141,7 +141,17 @@ def priority_over_glass():
     return furnace(scene, [0, -6, 3], [0, 0, 1.5], 6)
 
 
+def down_through_the_centre():
+    """Straight down beside the only thing, through the air and the middle of the Earth: the same three metres away."""
+    scene = {"materials": {"m": {"model": "lambert", "reflectance": 0.5}}, "objects": {"o": {"sphere": {"radius": 0.3}, "material": "m"}},
+             "world": [{"place": "o", "translate": [0, 40, 1]}]}
+    air = {"profile": "subarctic_winter", "gases": "none", "streams": 4, "ground_albedo": 0.03, "adjacency": False}
+    sun = {"direction": {"zenith_deg": 60, "azimuth_deg": 338}, "irradiance": 234}
+    sensor = {"kind": "orthographic", "name": "f", "columns": 4, "rows": 4, "gsd_m": 0.02, "height_m": 7, "paths": 4, "truth": [], "spectral_error": 1e-5, "bands": [BAND]}
+    return Case([(k, world(scene, {"sun": sun, "atmosphere": air, "sensors": [{**sensor, "center_m": [x, 0]}]})) for k, x in ((1, 0), (-1, 3))])
+
+
 KNOWN = {f.__name__: f for f in (lamp_mesh_beside_sphere, layer_in_layered_air, layer_in_profile_air, ball_in_pool, warm_ball_in_glass, glass_in_haze,
-                                 glowing_sphere, priority_over_glass)}
+                                 glowing_sphere, priority_over_glass, down_through_the_centre)}
 REPORTED = {"priority_over_glass": "but behind it there is"}  # a warning with this text will do as well
 OPEN = frozenset()  # names that are not mended yet: they are printed, and no error

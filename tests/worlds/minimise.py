@@ -117,7 +117,7 @@ def simpler(world):
     for name, m in world.scene["materials"].items():
         ways += [(f"{name} {k}", put(("scene", "materials", name, k), None)) for k in ("maps", "roughness_y", "transmittance", "outside") if k in m]
         if m.get("model") not in (None, "lambert", "dielectric", "ggx_dielectric"):
-            plain = {"model": "lambert", "reflectance": 0.5, **{k: v for k, v in m.items() if k.startswith("temperature")}}
+            plain = {"model": "lambert", "reflectance": 0.5, **{k: v for k, v in m.items() if k.startswith(("temperature", "thermal"))}}
             ways.append((f"{name} lambert", put(("scene", "materials", name), plain)))
         if m.get("model") == "ggx_dielectric":
             ways.append((f"{name} smooth", put(("scene", "materials", name, "model"), "dielectric")))

@@ -40,6 +40,7 @@ class Programs:
         self.binaries, self.scratch = os.path.realpath(binaries), scratch
         self.shared = os.path.join(scratch, "shared")
         self.warnings = {}
+        self.prepared = {}  # scene text and files -> what scene-prep made of them
         os.makedirs(self.shared, exist_ok=True)
 
     def fit(self, file):
@@ -76,8 +77,22 @@ class Programs:
                 shutil.copy(self.fit(name), folder)
 
     def prepare(self, world, folder, paths_factor=1):
+        """Writes the world and prepares its scene, unless the same one was prepared since forget()."""
         self.write(world, folder, paths_factor)
-        self.hear(self.run([self.tool("scene-prep"), "scene.yaml", "-o", "scene.h5", "-q", "--no-crossing-check"], folder))
+        key = (world.texts()[0], tuple(sorted(world.files.items())))
+        scene = os.path.join(folder, "scene.h5")
+        if key not in self.prepared:
+            self.hear(self.run([self.tool("scene-prep"), "scene.yaml", "-o", "scene.h5", "-q", "--no-crossing-check"], folder))
+            self.prepared[key] = os.path.join(self.shared, f"scene{len(self.prepared)}.h5")
+            shutil.copy(scene, self.prepared[key])
+        else:
+            shutil.copy(self.prepared[key], scene)
+
+    def forget(self):
+        """Scenes that were prepared; called between worlds."""
+        for path in self.prepared.values():
+            os.remove(path)
+        self.prepared = {}
 
     def hear(self, told):
         for line in told.splitlines():

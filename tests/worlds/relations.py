@@ -20,6 +20,7 @@ class Case:
     expected: Optional[Dict] = None
     tolerance: float = judge.TOLERANCE
     note: str = ""
+    floor: float = 0.0                   # radiance below which nothing is told apart (bins are chosen for what shines brightest)
     exact: Optional[Callable] = None     # in place of the sum: exact(programs, folder, seed) -> text of what is wrong, or ''
 
 
@@ -151,11 +152,12 @@ def frozen(*traits):
 RELATIONS = {r.name: r for r in (
     Relation("furnace", furnace, 5, frozen("furnace")),
     Relation("body_of_nothing", same_as(change.body_of_nothing), 4),
-    Relation("body_of_the_same", same_as(change.body_of_the_same), 2, frozen("wants_media")),
+    Relation("body_of_the_same", same_as(change.body_of_the_same), 2.5, frozen("wants_media")),
     Relation("bystander", same_as(change.bystander), 2),
     Relation("rigid_motion", same_as(change.rigid_motion), 3, frozen("moved")),
     Relation("regrouping", same_as(change.regroup), 2),
     Relation("splitting", same_as(change.split), 2),
+    Relation("scaled", same_as(change.scaled), 2, frozen("no_air", "no_profile", "moved")),
     Relation("superposition", superposition, 3),
     Relation("substitution", same_as(rewrite.substitute), 4),
     Relation("switches", same_as(change.switches), 2),

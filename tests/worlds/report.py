@@ -6,7 +6,7 @@ import statistics
 
 from rows import TABLE
 
-LEAST = 20  # worlds in 5,000 that a pair of rows must be in
+LEAST = 20  # worlds in 2,000 that a pair of rows must be in
 
 
 def read(log):
@@ -37,14 +37,15 @@ def pairs(results):
 def never(a, b):
     """Rows that are not drawn together: two of what a world has one of, or because one says so."""
     a, b = TABLE[a], TABLE[b]
-    single = {"spectrum", "floor", "fill", "air", "light_furnace", "bands"}
-    return a is not b and a.group == b.group and a.group in single or a.name in b.without or b.name in a.without
+    single = {"spectrum", "floor", "fill", "air", "sky", "light_furnace"}
+    furnace = {"sky_furnace"} & {a.name, b.name} and "furnace" in a.without | b.without
+    return furnace or a is not b and a.group == b.group and a.group in single or a.name in b.without or b.name in a.without
 
 
 def rare_pairs(results):
     counts, names = pairs(results), sorted(n for n in TABLE)
     judged = sum(r["status"] in ("holds", "fails") for r in results)
-    least = LEAST * judged / 5000
+    least = LEAST * judged / 2000
     return [(counts.get((a, b), 0), a, b) for i, a in enumerate(names) for b in names[i:] if not never(a, b) and counts.get((a, b), 0) < least]
 
 
@@ -68,7 +69,10 @@ def summary(results, table=None):
     bad = [r for r in results if r["status"] not in ("holds", "none")]
     lines += [f"{len(bad)} that do not hold:"] + ["  " + line(r) for r in bad[:60]] if bad else ["all hold"]
     rare = sorted(rare_pairs(results))
-    lines.append(f"pairs of rows drawn less often than {LEAST} in 5,000: {len(rare)}" + "".join(f"\n  {n:4} {a} x {b}" for n, a, b in rare[:30]))
+    counts, names = pairs(results), sorted(TABLE)
+    least = sorted((counts.get((a, b), 0), a, b) for i, a in enumerate(names) for b in names[i + 1:] if not never(a, b))[:10]
+    lines.append("least pairs of rows: " + ", ".join(f"{a} x {b} {n}" for n, a, b in least))
+    lines.append(f"pairs of rows drawn less often than {LEAST} in 2,000: {len(rare)}" + "".join(f"\n  {n:4} {a} x {b}" for n, a, b in rare[10:30]))
     if table:
         write_pairs(results, table)
     return "\n".join(lines)

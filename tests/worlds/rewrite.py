@@ -196,8 +196,17 @@ def still_motion(world, rng):
     return f"'{p['place']}' at rest by a motion ({p['motion']['kind']})"
 
 
+def sky_by_table(world, rng):
+    """A sky that is the same everywhere by a table, which is asked for, where else it is met by chance."""
+    sky = world.sim.get("sky", {})
+    if "radiance" not in sky or "table" in sky:
+        return None
+    sky["table"] = [[1, 1, 1], [1, 1, 1]]
+    return "an even sky by a table"
+
+
 REWRITES = {f.__name__: f for f in (mixture_of_equals, class_of_one, map_of_nothing, reflectance_by_map, curve_for_number, exact_by_mesh,
-                                    medium_in_other_words, voxels_for_box, glass_of_index_one, turns_in_other_words, still_motion)}
+                                    medium_in_other_words, voxels_for_box, glass_of_index_one, turns_in_other_words, still_motion, sky_by_table)}
 
 
 def substitute(world, rng):

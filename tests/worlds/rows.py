@@ -13,7 +13,7 @@ make(draw, ...) gives the row's piece of the text; what it is given and what it 
   thing        draw                  placements (a list) within a sphere of 1.4 m about the origin
   placing      draw, placement       the placement (of a thing), turned, moved, ...
   floor, fill  draw                  nothing; place what is under and around all things
-  air, light   draw                  nothing; write into the simulation
+  air, sky, light  draw              nothing; write into the simulation
   sensor       draw                  nothing; adds a sensor
 
 `without`: rows and traits of relations that the row is never drawn with, with the reason beside it.

@@ -79,7 +79,7 @@ def medium(d, index):
     if index is None:
         outer = around(d)[1]  # the front side of a surface looks into what bends less
         row = d.pick("medium", lambda r: r.name not in ("clear", "leaves") and (outer == 1 or "refracts" not in r.what))
-        index = 1 if "refracts" in row.what else d.u(max(1.2, outer), 1.8)
+        index = 1 if "refracts" in row.what else d.u(max(1.2, (outer or 1) + 0.03), 1.9)
         return d.world.add("media", "g", row.make(d, index)), None if "refracts" in row.what else index
     row = d.pick("medium", lambda r: "refracts" not in r.what and (index == 1 or r.name != "leaves"))
     return d.world.add("media", "h", row.make(d, index)), index
@@ -98,18 +98,17 @@ def interface(d, rough, own):
     """-> material, (medium, index) of a surface that bends light."""
     name, index = around(d)
     rough = rough or "reciprocal" in d.traits
-    spec = {"model": "ggx_dielectric", "roughness": d.u(0.1, 0.5)} if rough else {"model": "dielectric"}
+    spec = {"model": "ggx_dielectric", "roughness": d.roughness} if rough else {"model": "dielectric"}
     if own:
         inner, inner_index = medium(d, None)
         spec["inside"] = inner
-        if name and (index != 1 or d.chance(0.4)):
+        if name and (d.maybe("names_outside", 0.4) or index != 1):
             spec["outside"] = name
             d.take("names_outside")
         return d.material(spec), (inner, inner_index)
     n = d.u(1.2, 1.8)
     w = d.wavelength
-    if d.chance(0.3):
-        d.take("glass_dispersion")
+    if d.maybe("glass_dispersion", 0.3):
         spec["index"] = {"wavelength_um": [w * 0.5, w, w * 2], "value": [round(n * 1.02, 4), n, round(n * 0.98, 4)], "outside": "hold"}
     else:
         spec["index"] = n
@@ -131,7 +130,8 @@ def pane(d):
 
 def body(d):
     """A closed body of a medium: haze or glass. -> placements, (medium, index) in it."""
-    row = d.pick("body")
+    rough = any(m.get("model") == "ggx_dielectric" for m in d.world.scene["materials"].values())  # each index has tables, which take time
+    row = d.pick("body", lambda r: not rough or "reciprocal" in d.traits or not r.name.startswith("rough_")) or d.pick("body")
     return row.make(d)
 
 
@@ -147,10 +147,11 @@ def shrink(d, parts, scale, place=(0, 0, 0)):
 def inner_things(d):
     """What lies in a body: opaque things, or bodies again, two deep at most."""
     name, index = around(d)
+    if d.maybe("glows_within", 0.4):
+        return glowing(d)
     if name is None and index != 1 or index is None or len(d.surround) > 3:
         return opaque(d)
-    if d.chance(0.4):
-        d.take("nested_deep")
+    if d.maybe("nested_deep", 0.55):
         return nested(d)
     return a_body(d) if d.chance(0.55) else opaque(d)
 
@@ -184,7 +185,7 @@ def glass_on_opaque(d):
 
 
 def overlapping(d):
-    index, parts = around(d)[1], []
+    index, parts = around(d)[1], []  # refracting surfaces that overlap in part would need an index to each side that changes along them
     for shift, priority in zip((-0.25, 0.25), d.rng.sample((1, 2, 3), 2)):  # equal ones that overlap in part are not defined
         name, _ = medium(d, index)
         d.world.scene["media"][name]["priority"] = priority
@@ -193,9 +194,19 @@ def overlapping(d):
     return parts
 
 
+def lit_glass(d):
+    """Glass with a lamp in its middle."""
+    made = d.pick("body", lambda r: r.name != "haze_body").make(d)[0]
+    shape = d.world.scene["objects"][made[0]["place"]]
+    made[0]["translate"] = [0, 0, -0.4 * next((shape[k]["height"] for k in ("cone", "cylinder") if k in shape), 0)]  # these begin at the origin
+    d.pending_lamp = {"kind": "point", "intensity": round(d.level * d.u(2, 20), 3)}
+    return [{"place": d.world.add("groups", "lit", made)}]
+
+
 def volume(d):
     """Voxels of a medium; they stand in the scene itself, wherever the thing is placed: world.py moves them there."""
     name, _ = medium(d, 1)
+    d.world.scene["media"][name].pop("priority", None)  # volumes add to whatever is there
     file = f"grid{len(d.world.files)}.vox"
     fields = {"density": [d.u(0, 2) for _ in range(8)]}
     if d.furnace and d.chance(0.5):
@@ -209,7 +220,7 @@ def volume(d):
 def cluster(d):
     parts = []
     for at in ((0.5, 0.3, 0.1), (-0.5, -0.3, 0), (0.1, -0.2, 0.7))[:d.one(2, 3)]:
-        make = d.pick("thing", lambda r: r.name not in ("cluster", "volume")).make
+        make = d.pick("thing", lambda r: r.name not in ("cluster", "volume", "lit_glass")).make
         things = make(d)
         parts.append(shrink(d, things[0] if isinstance(things, tuple) else things, 0.3, at))
     return parts
@@ -245,12 +256,11 @@ def pool(d):
     name = d.world.add("media", "g", d.pick("medium", lambda r: r.name not in ("clear", "scattering", "leaves")).make(d, d.u(1.2, 1.5)))
     index = d.world.scene["media"][name].get("index")
     rough = d.chance(0.3) or "reciprocal" in d.traits
-    top = d.material({"model": "ggx_dielectric", "roughness": 0.2, "inside": name} if rough else {"model": "dielectric", "inside": name})
+    top = d.material({"model": "ggx_dielectric", "roughness": d.roughness, "inside": name} if rough else {"model": "dielectric", "inside": name})
     d.place(d.world.add("objects", "top", {"plane": {"width": 0, "depth": 0}, "material": top}))
     d.place(d.world.add("objects", "bed", {"plane": {"width": 0, "depth": 0}, "material": d.opaque()}), translate=[0, 0, -1.5])
     d.surround.append((name, index if isinstance(index, float) else None))
-    if d.chance(0.6):
-        d.take("in_water")
+    if d.maybe("in_water", 0.6):
         known = isinstance(index, float)
         make = d.pick("thing", lambda r: r.name in (("opaque", "a_body", "nested") if known else ("opaque",))).make
         d.world.scene["world"].append(dict(shrink(d, make(d), 0.5), translate=[d.u(-1, 1), d.u(-1, 1), -0.75]))
@@ -265,8 +275,7 @@ def room(kind):
         spec = {"sphere": {"radius": 25}} if kind == "sphere" else {"box": {"x0": -14, "y0": -14, "z0": -3, "x1": 14, "y1": 14, "z1": 14}}
         row = d.pick("model", lambda r: r.name not in ("lambert_through", "leaf", "mirror"))
         material = row.make(d)
-        if d.chance(0.6):
-            d.take("room_glows")
+        if d.maybe("room_glows", 0.6):
             material = glow(d, d.u(0, 0.6))
         else:
             material = d.material({**material, **d.emission(True)})
@@ -317,17 +326,17 @@ def ambient(d):
 
 
 NO_ROOM = {"without": ("room_sphere", "room_box", "periodic")}
-AMBIENT = ("layered_air", "profile_air", "profile_no_adjacency", "traced_air", "tabled_air", "periodic")
+AMBIENT = ("layered_air", "profile_air", "profile_no_adjacency", "traced_air", "gases_air", "periodic")
 FLOORS = ("floor_none", "floor_plane", "floor_infinite", "floor_sinusoid", "floor_mesh")
 NO_POOL = FLOORS + ("room_sphere", "room_box")
 NOT_A_ROOM = FLOORS + ("pool", "in_water", "point_in_water", "sun", "sun_collimated", "moon", "sky", "sky_full", "sky_table", "sky_thermal", "clear_sky",
-                       "sky_furnace", "layered_air", "profile_air", "profile_no_adjacency", "traced_air")
+                       "sky_furnace", "layered_air", "profile_air", "profile_no_adjacency", "traced_air", "gases_air")
 SMOOTH = {"without": ("reciprocal",)}   # a point's light by a smooth surface is found from one end alone
 SHADING = {"without": ("reciprocal",)}  # normals that are not the surface's are not reciprocal
 ROWS = [
     ("plane", "shape", plane, {"weight": 1.5}), ("disk", "shape", disk, {"weight": 1.5}), ("box", "shape", box, CLOSED), ("sphere", "shape", sphere, CLOSED),
     ("cone", "shape", cone, CLOSED), ("cylinder", "shape", cylinder, CLOSED), ("pipe", "shape", pipe, {"weight": 1.5}), ("sinusoid", "shape", sinusoid, {"weight": 1.5}),
-    ("mesh_box", "shape", mesh_box, CLOSED), ("mesh_ball", "shape", mesh_ball, CLOSED), ("mesh_smooth", "shape", mesh_smooth, SHADING),
+    ("mesh_box", "shape", mesh_box, CLOSED), ("mesh_ball", "shape", mesh_ball, CLOSED), ("mesh_smooth", "shape", mesh_smooth, {"weight": 2, **SHADING}),
     ("mesh_quad", "shape", mesh_quad, {"weight": 1.5}), ("solid_voxels", "shape", solid_voxels, {"weight": 1.5}),
     ("haze_body", "body", haze_body, {"weight": 2}), ("glass_index", "body", glass(False, False), SMOOTH), ("glass_medium", "body", glass(False, True), SMOOTH),
     ("rough_index", "body", glass(True, False)), ("rough_medium", "body", glass(True, True)),
@@ -336,11 +345,12 @@ ROWS = [
     ("opaque", "thing", opaque, {"weight": 3}), ("a_body", "thing", a_body, {"weight": 2}), ("pane", "thing", pane),
     ("nested", "thing", nested, {"weight": 2}), ("touching", "thing", touching), ("glass_on_opaque", "thing", glass_on_opaque),
     ("overlapping", "thing", overlapping), ("volume", "thing", volume, {"without": ("no_volume",)}), ("cluster", "thing", cluster),
+    ("lit_glass", "thing", lit_glass, {"without": ("furnace", "reciprocal", "no_lit_glass")}), ("glows_within", "detail", None, {"without": ("furnace",)}),
     ("glowing", "thing", glowing),
-    ("floor_none", "floor", floor_none), ("floor_plane", "floor", floor_plane), ("floor_infinite", "floor", floor_infinite),
+    ("floor_none", "floor", floor_none, {"weight": 1.5}), ("floor_plane", "floor", floor_plane), ("floor_infinite", "floor", floor_infinite),
     ("floor_sinusoid", "floor", floor_sinusoid), ("floor_mesh", "floor", floor_mesh), ("pool", "floor", pool, {"weight": 2}),
-    ("room_sphere", "floor", room("sphere"), {"weight": 1.3, "without": ("no_room",)}),
-    ("room_box", "floor", room("box"), {"weight": 1.3, "without": ("no_room",)}),
+    ("room_sphere", "floor", room("sphere"), {"weight": 2.4, "without": ("no_room",)}),
+    ("room_box", "floor", room("box"), {"weight": 2.8, "without": ("no_room",)}),
     ("fill_none", "fill", fill_none, {"weight": 3}), ("layer", "fill", layer, {"weight": 1.5}), ("two_layers", "fill", two_layers),
-    ("ambient", "fill", ambient, {"without": AMBIENT}),  # air of the simulation fills all space, too
+    ("ambient", "fill", ambient, {"weight": 1.6, "without": AMBIENT}),  # air of the simulation fills all space, too
 ]

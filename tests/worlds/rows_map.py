@@ -35,7 +35,7 @@ def hung(d, material, spec):
 
 def grey(d, material):
     """A material with a reflectance that maps can vary, as warm as the one that is given."""
-    warm = {k: v for k, v in material.items() if k.startswith("temperature")}
+    warm = {k: v for k, v in material.items() if k.startswith(("temperature", "thermal"))}
     return {"model": "lambert" if "reciprocal" in d.traits else d.one("lambert", "mirror"), "reflectance": d.u(0.1, 0.8), **warm} if d.chance(0.7) else \
         {"model": "oren_nayar", "reflectance": d.u(0.1, 0.8), "sigma": 0.3, **warm}
 
@@ -92,8 +92,8 @@ def opacity(d, material):
 
 SHADING = {"without": ("reciprocal",)}  # normals that are not the surface's are not reciprocal
 ROWS = [
-    ("class_map", "map", class_map), ("mixture", "map", mixture), ("curve_index", "map", curve_index), ("texture", "map", texture, {"without": ("moved", "periodic")}),  # pixels of one value are ranked by where they are
+    ("class_map", "map", class_map, {"weight": 1.2}), ("mixture", "map", mixture, {"weight": 1.2}), ("curve_index", "map", curve_index, {"weight": 1.6}), ("texture", "map", texture, {"weight": 3, "without": ("moved", "periodic")}),  # pixels of one value are ranked by where they are
    
-    ("cube", "map", cube), ("temperature_map", "map", temperature), ("bump", "map", bump, SHADING), ("normal_map", "map", normal, SHADING),
+    ("cube", "map", cube, {"weight": 1.5}), ("temperature_map", "map", temperature, {"weight": 1.8}), ("bump", "map", bump, {"weight": 1.8, **SHADING}), ("normal_map", "map", normal, {"weight": 1.6, **SHADING}),
     ("opacity", "map", opacity),
 ]

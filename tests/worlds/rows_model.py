@@ -32,8 +32,8 @@ def ward(d):
 
 def ggx(d):
     optics = {"f0": d.u(0.3, 0.95)} if d.chance(0.5) else {"n": d.u(0.2, 3), "k": d.u(1, 5)}
-    spec = {"model": "ggx", **optics, "roughness": d.u(0.15, 0.7)}
-    return dict(spec, roughness_y=d.u(0.15, 0.7)) if d.chance(0.4) else spec
+    spec = {"model": "ggx", **optics, "roughness": d.roughness}
+    return dict(spec, roughness_y=d.u(0.15, 0.7)) if d.chance(0.08) else spec  # its tables take a second
 
 
 def oren_nayar(d):
@@ -41,7 +41,7 @@ def oren_nayar(d):
 
 
 def rpv(d):
-    return {"model": "rpv", "rho0": d.u(0.05, 0.3), "k": d.u(0.6, 1.1), "asymmetry": d.u(-0.3, 0.2), "rho_c": d.u(0.3, 1)}
+    return {"model": "rpv", "rho0": d.u(0.05, 0.15), "k": d.u(0.75, 1.1), "asymmetry": d.u(-0.3, 0.2), "rho_c": d.u(0.3, 1)}
 
 
 def ross_li(d):
@@ -53,7 +53,7 @@ def roujean(d):
 
 
 def priest_germer(d):
-    return {"model": "priest_germer", "index": d.u(1.3, 2), "absorption": d.u(0, 3), "sigma": d.u(0.1, 0.4), "diffuse": d.u(0, 0.25)}
+    return {"model": "priest_germer", "index": d.u(1.3, 2), "absorption": d.u(0, 3), "sigma": d.u(0.1, 0.4), "diffuse": d.u(0, 0.2)}
 
 
 def maxwell(model):
@@ -71,8 +71,8 @@ def leaf(d):
 
 
 def sea(d):
-    spec = {"model": "sea", "wind_m_s": d.u(3, 12), "below": d.u(0, 0.05)}
-    return dict(spec, directed=1) if d.chance(0.4) else spec
+    spec = {"model": "sea", "wind_m_s": d.wind, "below": d.u(0, 0.05)}
+    return dict(spec, directed=1) if d.chance(0.06) else spec  # its tables take five seconds
 
 
 def sqt(d):
@@ -87,6 +87,14 @@ def constant(d, kelvin):
 def table(d, kelvin):
     end = kelvin if d.furnace else round(kelvin * 1.02, 2)
     return {"temperature": {"table": [[-1000, kelvin], [1000, end]]}}
+
+
+def slab(d, kelvin):
+    """Layers in balance: sky and air are as warm as they are, nothing else warms them."""
+    sky = 5.670374419e-8 * kelvin ** 4
+    loads = {"table": [[-1000, 0, sky, kelvin, 2], [1000, 0, sky, kelvin, 2]], "repeat": False}
+    layers = [{"thickness_m": 0.05, "density_kg_m3": 2000, "specific_heat_j_kg_k": 900, "conductivity_w_m_k": 1.2}]
+    return {"temperature": {"model": "slab", "loads": loads, "start_s": -900, "initial_k": kelvin, "deep_temperature_k": kelvin}, "thermal": {"layers": layers}}
 
 
 # --- phase functions ---
@@ -134,6 +142,8 @@ def finish(d, medium, index, emits, scatters):
             medium["phase"] = phase
     if index != 1:
         medium["index"] = index
+    elif d.maybe("priority", 0.25):  # haze hides haze; what bends light holds before any: else its surface is not what its material says
+        medium["priority"] = d.one(-2, -1)
     if emits and (d.furnace or d.chance(0.3)):
         medium["temperature_k"] = d.kelvin
     return medium
@@ -180,19 +190,19 @@ ROWS = [
     ("visible", "spectrum", spectrum(0.55, 1700, 60.0), {"weight": 3}),
     ("infrared", "spectrum", spectrum(2.2, 500, 3.0)),
     ("thermal", "spectrum", spectrum(10.0, 300, 8.0)),
-    ("curves", "curves", None),
-    ("lambert", "model", lambert, {"weight": 2}), ("lambert_through", "model", lambert_through), ("mirror", "model", mirror, {"without": ("reciprocal",)}),  # as smooth glass
-   
-    ("ward", "model", ward), ("ggx", "model", ggx, {"weight": 0.7}),  # the tables of ggx and sea take a second or more
-     ("oren_nayar", "model", oren_nayar), ("rpv", "model", rpv), ("ross_li", "model", ross_li),
+    ("curves", "curves", None), ("priority", "detail", None),
+    ("lambert", "model", lambert, {"weight": 2}), ("lambert_through", "model", lambert_through), ("mirror", "model", mirror, {"without": ("reciprocal",)}),  # of a point's light it sends on, no path from the other end finds any
+    ("ward", "model", ward), ("ggx", "model", ggx),
+    ("oren_nayar", "model", oren_nayar), ("rpv", "model", rpv), ("ross_li", "model", ross_li),
     ("roujean", "model", roujean), ("priest_germer", "model", priest_germer), ("beard_maxwell", "model", maxwell("beard_maxwell")),
-    ("shell", "model", maxwell("shell")), ("leaf", "model", leaf), ("sea", "model", sea, {"weight": 0.7}),
+    ("shell", "model", maxwell("shell")), ("leaf", "model", leaf), ("sea", "model", sea),
     ("sqt", "model", sqt, {"without": ("reciprocal",)}),  # a fit is reciprocal but for its own error
     ("temperature_constant", "temperature", constant, {"weight": 2}), ("temperature_table", "temperature", table),
+    ("temperature_slab", "temperature", slab),
     ("hg", "phase", hg), ("double_hg", "phase", double_hg), ("rayleigh", "phase", rayleigh), ("tabulated", "phase", tabulated),
     ("isotropic", "phase", isotropic), ("fournier_forand", "phase", forand), ("petzold", "phase", petzold),
     ("leaves_phase", "phase", leaves_phase), ("sqt_phase", "phase", sqt_phase),
     ("absorbing", "medium", absorbing), ("scattering", "medium", scattering), ("hazy", "medium", hazy, {"weight": 2}), ("clear", "medium", clear),
-    ("leaves", "medium", leaves), ("water", "medium", water, {"what": ("refracts",), "without": ("reciprocal",)}),  # it is warm
+    ("leaves", "medium", leaves), ("water", "medium", water, {"what": ("refracts",)}),
     ("dispersive", "medium", dispersive, {"what": ("refracts",)}),
 ]

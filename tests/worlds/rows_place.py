@@ -36,6 +36,13 @@ def grouped(d, name, place):
     return {"place": name, "translate": place}
 
 
+def far_scales(d, name, place):
+    """The thing as it is, by a large scale of a small one."""
+    factor = d.one(1e-5, 1e-3, 1e3, 1e5)
+    inner = d.world.add("groups", "deep", [{"place": name, "scale": factor}])
+    return {"place": inner, "scale": 1 / factor, "translate": place}
+
+
 def matrix(d, name, place):
     a, s = math.radians(d.u(0, 360)), d.u(0.5, 1.1)
     c, n = s * math.cos(a), s * math.sin(a)
@@ -79,10 +86,11 @@ def scheduled(d, name, place):
     return {"place": name, "rotate": turn(d), "translate": place, "schedule": {"rows": rows}}
 
 
+MIDDLE = {"what": ("about_middle",)}  # what is at the thing's origin is at `place`, always
+MOVES = {"without": ("still_world",)}
 ROWS = [
-    ("still", "placing", still, {"weight": 3}), ("rotated", "placing", rotated, {"weight": 2}), ("scaled", "placing", scaled),
-    ("stretched", "placing", stretched), ("mirrored", "placing", mirrored), ("grouped", "placing", grouped), ("matrix", "placing", matrix),
-    ("table", "placing", table), ("spin", "placing", spin, {"without": ("still_world",)}), ("straight", "placing", straight, {"without": ("still_world",)}),
-    ("keyframes", "placing", keyframes, {"without": ("still_world",)}), ("appears", "placing", appears, {"without": ("still_world",)}),
-    ("scheduled", "placing", scheduled, {"without": ("still_world",)}),
+    ("still", "placing", still, {"weight": 2, **MIDDLE}), ("rotated", "placing", rotated, {"weight": 1.5, **MIDDLE}), ("scaled", "placing", scaled, MIDDLE),
+    ("stretched", "placing", stretched, MIDDLE), ("mirrored", "placing", mirrored, MIDDLE), ("grouped", "placing", grouped, MIDDLE), ("far_scales", "placing", far_scales, MIDDLE),
+    ("matrix", "placing", matrix, MIDDLE), ("table", "placing", table), ("spin", "placing", spin, {**MOVES, **MIDDLE}), ("straight", "placing", straight, MOVES),
+    ("keyframes", "placing", keyframes, MOVES), ("appears", "placing", appears, MOVES), ("scheduled", "placing", scheduled, MOVES),
 ]

@@ -9,7 +9,7 @@ def common(d, name, **keys):
     bands = [{"name": "b", "center_um": w, "fwhm_um": d.width, "shape": "rectangular"}]
     if d.world.facts.get("bands", 1) == 2:
         bands.append({"name": "c", "center_um": round(w * 1.2, 4), "fwhm_um": d.width, "shape": "rectangular"})
-    return {"name": name, "bands": bands, "paths": d.world.facts["paths"], "spectral_error": 1e-5, "truth": [], **keys}
+    return {"name": name, "bands": bands, "paths": d.world.facts["paths"], "spectral_error": d.world.facts.get("spectral_error", 1e-5), "truth": [], **keys}
 
 
 def add(d, sensor, factors=None):
@@ -25,16 +25,18 @@ def times(d):
 
 def viewpoint(d):
     """-> position, point looked at."""
-    if d.world.scene["world"] and d.chance(0.25):
-        d.take("camera_within")  # among the things, under the top of a layer
+    if d.world.scene["world"] and d.maybe("camera_within", 0.4):  # among the things, under the top of a layer
         return [d.u(-0.1, 0.1), d.u(-0.1, 0.1), 3.3], [d.u(-3, 3), d.u(-3, 3), d.u(0, 1.5)]
     a, r, z = math.radians(d.u(0, 360)), d.u(1, 9), d.u(6.5, 11)
+    if d.maybe("camera_far", 0.65):
+        r, z = 1e4 * r, 1e4 * z
     return [round(r * math.cos(a), 3), round(r * math.sin(a), 3), z], [d.u(-0.8, 0.8), d.u(-0.8, 0.8), d.u(0, 1)]
 
 
 def frame(d):
     position, target = viewpoint(d)
-    add(d, common(d, "frame", kind="frame_camera", columns=COLUMNS, rows=ROWS_OF_PIXELS, pitch_um=200, focal_length_mm=d.u(1.2, 2.5), position_m=position,
+    tele = 1e4 if "camera_far" in d.world.rows and abs(position[2]) > 1000 else 1
+    add(d, common(d, "frame", kind="frame_camera", columns=COLUMNS, rows=ROWS_OF_PIXELS, pitch_um=200, focal_length_mm=round(tele * d.u(1.2, 2.5), 3), position_m=position,
                   look_at_m=target, up=[0, 0, 1], **times(d)))
 
 
@@ -43,16 +45,21 @@ def orthographic(d):
                   height_m=d.one(7, 12), **times(d)))
 
 
-def platform(d, name, motion, array, task):
+def platform(d, name, motion, array, task, lens=None):
     keys = {k: v for k, v in common(d, "a").items() if k not in ("truth", "name")}
     add(d, {"kind": "platform", "name": name, "truth": [], "motion": motion, "tasks": [task],
-            "instruments": [{"focal_length_mm": d.u(1.2, 2.5), "arrays": [{**keys, **array}]}]})
+            "instruments": [{"focal_length_mm": d.u(1.2, 2.5), **(lens or {}), "arrays": [{**keys, **array}]}]})
 
 
 def platform_frame(d):
     t = times(d)
     motion = {"kind": "static", "position_m": [d.u(-1, 1), d.u(-1, 1), d.u(7, 11)], "heading_deg": d.u(0, 360), "pitch_deg": d.u(-10, 10)}
-    platform(d, "platform", motion, {"columns": COLUMNS, "rows": ROWS_OF_PIXELS, "pitch_um": 200, "integration_time_s": t.get("integration_time_s", 0)}, {"start": t["time_s"]})
+    array = {"columns": COLUMNS, "rows": ROWS_OF_PIXELS, "pitch_um": 200, "integration_time_s": t.get("integration_time_s", 0)}
+    lens = {}
+    if d.maybe("lens", 0.6):
+        lens = d.one({"distortion": {"k1": d.u(-0.3, 0.3), "p1": d.u(-0.02, 0.02)}}, {"f_number": d.u(0.5, 8), "focus_distance_m": d.one(0.5, 5, 1000)},
+                     {"psf": {"kind": "gaussian", "sigma_um": d.one(10, 150)}}, {"f_number": d.u(1, 16), "psf": {"kind": "airy"}})
+    platform(d, "platform", motion, array, {"start": t["time_s"]}, lens)
 
 
 def pushbroom(d):
@@ -98,9 +105,9 @@ def two_bands(d):
 
 
 ROWS = [
-    ("two_bands", "bands", two_bands), ("camera_within", "detail", None), ("point_in_water", "detail", None, {"without": ("floor_none", "floor_plane", "floor_infinite", "floor_sinusoid", "floor_mesh", "room_sphere", "room_box")}),
+    ("two_bands", "bands", two_bands), ("camera_within", "detail", None), ("lens", "detail", None), ("camera_far", "detail", None, {"without": ("layered_air", "ambient", "room_sphere", "room_box", "room_glows", "camera_within", "fisheye")}), ("point_in_water", "detail", None, {"without": ("floor_none", "floor_plane", "floor_infinite", "floor_sinusoid", "floor_mesh", "room_sphere", "room_box")}),
     ("frame", "sensor", frame, {"weight": 3}),
-    ("orthographic", "sensor", orthographic), ("platform_frame", "sensor", platform_frame), ("pushbroom", "sensor", pushbroom),
+    ("orthographic", "sensor", orthographic), ("platform_frame", "sensor", platform_frame, {"weight": 1.8}), ("pushbroom", "sensor", pushbroom),
     ("fisheye", "sensor", fisheye), ("irradiance", "sensor", points("irradiance", math.pi), {"weight": 1.5}), ("radiance", "sensor", points("radiance", 1), {"weight": 1.5}),
     ("actinic_flux", "sensor", points("actinic_flux", 4 * math.pi), {"weight": 1.5}),
 ]

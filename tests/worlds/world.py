@@ -97,7 +97,8 @@ class Draw:
         self.wavelength, self.width, self.kelvin, self.level = 0.55, 0.01, 1800.0, 100.0  # the spectrum row says which
         self.surround = []    # names of the media around what is being drawn, the innermost last; None: a body without a name
         self.moving = False   # something moves: the capture has a duration
-        self.lamp_materials = []
+        self.roughness = self.u(0.15, 0.6)  # of all facets: one table a world
+        self.wind = self.u(3, 12)
 
     # --- numbers ---
     def u(self, low, high):
@@ -111,9 +112,8 @@ class Draw:
 
     def curve(self, value, low=0.0, high=1.0):
         """A number, or (row 'curves') a curve through it."""
-        if not self.chance(0.15) or not self.may("curves"):
+        if not self.maybe("curves", 0.15):
             return value
-        self.take("curves")
         other = min(max(value * self.u(0.9, 1.1), low), high)
         return {"wavelength_um": [self.wavelength * 0.5, self.wavelength, self.wavelength * 2], "value": [value, value, round(other, 5)],
                 "outside": "hold"}
@@ -136,6 +136,13 @@ class Draw:
         row = self.rng.choices(rows, [r.weight for r in rows])[0]
         return self.take(row.name)
 
+    def maybe(self, name, p):
+        """Takes a row of details with that chance, where it may be."""
+        if not self.chance(p) or not self.may(name):
+            return False
+        self.take(name)
+        return True
+
     @property
     def furnace(self):
         return "furnace" in self.traits
@@ -155,7 +162,7 @@ class Draw:
         """A material that nothing is looked through, with maps perhaps."""
         spec = dict(self.pick("model").make(self))
         spec.update(self.emission())
-        if self.chance(0.5):
+        if self.chance(0.8):
             row = self.pick("map")
             if row:
                 spec = row.make(self, spec)
@@ -180,7 +187,7 @@ SLOTS = [(x, y) for x in (-3.2 / 2, 3.2 / 2) for y in (-1.6, 1.6)]  # middles of
 
 def place_thing(d, slot):
     """Draws a thing and puts it into a slot, which it does not leave whatever it is turned or scaled by."""
-    d.pending_volume = None
+    d.pending_volume = d.pending_lamp = None
     made = d.pick("thing").make(d)
     parts = made[0] if isinstance(made, tuple) else made
     place = [slot[0], slot[1], 1.6]
@@ -192,7 +199,10 @@ def place_thing(d, slot):
         del d.holds_media
     single = len(parts) == 1 and set(parts[0]) == {"place"}
     name = parts[0]["place"] if single else d.world.add("groups", "thing", parts)
-    d.world.scene["world"].append(d.pick("placing").make(d, name, place))
+    row = d.pick("placing", lambda r: not d.pending_lamp or "about_middle" in r.what)
+    d.world.scene["world"].append(row.make(d, name, place))
+    if d.pending_lamp:
+        d.world.sim["lamps"].append({**d.pending_lamp, "position_m": place})
     d.__dict__.pop("holds_media", None)
 
 
@@ -201,7 +211,10 @@ def add_lights(d):
         if not d.world.facts.get("room"):
             d.pick("light_furnace").make(d)
         return
-    for _ in range(d.one(1, 2, 2, 3)):
+    sky = d.pick("sky") if d.chance(0.95) else None
+    if sky:
+        sky.make(d)
+    for _ in range(d.one(1, 1, 2)):
         row = d.pick("light")
         if row:
             row.make(d)
@@ -211,8 +224,8 @@ def draw_world(seed, traits, table, paths=4):
     d = Draw(seed, traits, table)
     d.world.facts.update(paths=paths, furnace=d.furnace)
     d.pick("spectrum").make(d)
-    if d.chance(0.2):
-        d.pick("bands").make(d)
+    if d.maybe("two_bands", 0.2):
+        table["two_bands"].make(d)
     d.pick("air").make(d)
     host = d.one("pool", "fill") if "wants_media" in d.traits else None
     d.pick("floor", lambda r: host != "pool" or r.name == "pool").make(d)
@@ -221,10 +234,12 @@ def draw_world(seed, traits, table, paths=4):
     d.pick("fill", lambda r: host != "fill" or r.name != "fill_none").make(d)
     slots = SLOTS[:]
     d.rng.shuffle(slots)
-    for slot in slots[:d.one(1, 2, 3, 3)]:
+    for slot in slots[:d.one(2, 3, 3, 4)]:
         place_thing(d, slot)
+    if not d.world.scene["world"]:  # volumes alone are no scene
+        d.place(d.world.add("objects", "o", {"sphere": {"radius": 0.3}, "material": d.opaque()}), translate=[0, 0, 0.5])
     add_lights(d)
-    for k in range(d.one(1, 2)):
+    for k in range(d.one(1, 2, 2)):
         cameras = k == 0 and "wants_camera" in traits
         row = d.pick("sensor", lambda r: r.name not in d.world.rows and (not cameras or r.name in ("frame", "orthographic")))
         if row:
@@ -233,5 +248,5 @@ def draw_world(seed, traits, table, paths=4):
         d.world.sim["periodic"] = {"origin_m": [-4.0, -4.0], "size_m": [8.0, 8.0]}
     windows = {"windows_um": [[round(d.wavelength * 0.98, 5), round(d.wavelength * (1.22 if "two_bands" in d.world.rows else 1.02), 5)]]}
     d.world.scene.update(windows)
-    d.world.facts.update(wavelength=d.wavelength, width=d.width, kelvin=d.kelvin, moving=d.moving)
+    d.world.facts.update(level=d.level, wavelength=d.wavelength, width=d.width, kelvin=d.kelvin, moving=d.moving)
     return d.world
