@@ -15,6 +15,8 @@
 
 namespace suite {
 struct Raster;
+struct SourceMaterial;
+struct SourceModel;
 struct WaterSpec;
 }  // namespace suite
 
@@ -89,6 +91,10 @@ class Reader {
   void read_model(const Params& p, const std::string& kind, DraftGeometry g, size_t slot);
   void read_city_mesh(const Params& p, DraftGeometry& g);
   void forget_temperatures(const Params& p, SourceMesh& mesh);
+  // textures.cpp
+  std::array<double, 3> read_texture(const Params& p, const SourceMaterial& from, const std::string& id, bool by_texel,
+                                     size_t classes);
+  void read_textures(const Params& p, const SourceModel& model, DraftGeometry& g);
   // points.cpp
   void read_points(const Params& p, DraftGeometry& g);
   VoxelData read_point_voxels(const Params& p, const Params& file);

@@ -99,6 +99,37 @@ def ply(kind, path, faces=((0, 1, 4), (0, 1, 2, 3))):
     return path
 
 
+def textured_box():
+    """DATA's Box.glb with texture coordinates (its positions' x and y) and an image of one red texel."""
+    with open(DATA + "/gltf/Box.glb", "rb") as f:
+        data = f.read()
+    length = struct.unpack("<I", data[12:16])[0]
+    root = json.loads(data[20:20 + length])
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    png = (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0))
+           + chunk(b"IDAT", zlib.compress(b"\0\xff\0\0")) + chunk(b"IEND", b""))
+    binary = data[28 + length:]
+    binary += b"\0" * (-len(binary) % 4)
+    count = root["accessors"][root["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]["count"]
+    root["bufferViews"] += [{"buffer": 0, "byteOffset": len(binary), "byteLength": 8 * count},
+                            {"buffer": 0, "byteOffset": len(binary) + 8 * count, "byteLength": len(png)}]
+    root["accessors"].append({"bufferView": len(root["bufferViews"]) - 2, "componentType": 5126, "count": count, "type": "VEC2"})
+    root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = len(root["accessors"]) - 1
+    root["images"] = [{"bufferView": len(root["bufferViews"]) - 1, "mimeType": "image/png"}]
+    root["textures"] = [{"source": 0}]
+    root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+    binary += struct.pack("<2f", 0.25, 0.75) * count + png
+    binary += b"\0" * (-len(binary) % 4)
+    root["buffers"][0]["byteLength"] = len(binary)
+    text = json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    path = WORK + "/textured.glb"
+    with open(path, "wb") as f:
+        f.write(b"glTF" + struct.pack("<II", 2, 28 + len(text) + len(binary)) + struct.pack("<I", len(text)) + b"JSON" + text
+                + struct.pack("<I", len(binary)) + b"BIN\0" + binary)
+    return path
+
+
 class Whole(int):
     """A number of 32 bits."""
 
@@ -327,6 +358,18 @@ class Models(unittest.TestCase):
         code, said = prepare(box, "--uplift")
         self.assertEqual(code, 0, said)
         self.assertIn("a spectrum is guessed from the display colour (0.800, 0.000, 0.000)", said)
+
+    def test_textures(self):
+        """A GLB with an image: its material is made of the texture, and the text says so."""
+        made = subprocess.run([BIN + "/scene-prep", textured_box(), "--uplift", "--convert", WORK + "/uplifted"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        with open(WORK + "/uplifted/textured.yaml", encoding="utf-8") as f:
+            self.assertIn("textures: {uplift: texel}", f.read())
+        code, said = prepare(textured_box(), "--uplift")
+        self.assertEqual(code, 0, said)
+        self.assertIn("its texture is uplifted to spectra", said)
+        self.assertIn("1 materials are matte with reflectances uplifted from display colours, 1 of them from textures", said)
 
     def test_in_a_scene(self):
         with open(WORK + "/scene.yaml", "w", encoding="utf-8") as f:
