@@ -162,14 +162,10 @@ TEST_F(UselessPictures, BandsBeyondUpliftedColours) {
                 "reflectance: {points: [[0.38, 0.2], [0.78, 0.3]], outside: hold}, "
                 "description: uplifted from a display colour 0.2 0.2 0.3");
   prepare(scene.c_str(), "guess");
-  const auto said = [&](double um) {
-    const std::string text = "scene: guess.h5\n" + kDay + camera("[4, -1, 50]", "[4, 0, 1]", um);
-    write_file(*folder_ / "sim.yaml", std::string_view(text));
-    return run("dirsig-render sim.yaml --dry-run").err;
-  };
-  EXPECT_THAT(said(0.8), HasSubstr("band 'pan' (0.8 um) reaches beyond 0.38 to 0.78 um, where 1 materials have "
+  const auto told = [&](double um) { return said(kDay + camera("[4, -1, 50]", "[4, 0, 1]", um), "guess"); };
+  EXPECT_THAT(told(0.8), HasSubstr("band 'pan' (0.8 um) reaches beyond 0.38 to 0.78 um, where 1 materials have "
                                    "reflectances uplifted from display colours (the first is 'ground')"));
-  EXPECT_THAT(said(0.6), testing::Not(HasSubstr("uplifted")));
+  EXPECT_THAT(told(0.6), testing::Not(HasSubstr("uplifted")));
 }
 
 TEST_F(UselessPictures, AllZero) {

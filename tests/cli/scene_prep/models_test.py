@@ -4,12 +4,14 @@ models_test.py BIN DATA WORK. Needs numpy and assimp's program (scripts/packages
 made 1000 times larger, so that the six decimals of --export-obj stand for nanometres; the bound of 5e-7 m is that of
 the file's own metres.
 """
+import json
 import os
 import re
 import struct
 import subprocess
 import sys
 import unittest
+import zlib
 
 try:
     import numpy as np
