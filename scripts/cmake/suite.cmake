@@ -151,11 +151,11 @@ function(suite_test place)
   set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${A_TIMEOUT} ENVIRONMENT "${SUITE_LEAKS}")
 endfunction()
 
-# suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: some 20 000 (seconds) in the default
-# run, and a campaign of 30 s per input under the label `long`.
+# suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: 1000 an input in the default run,
+# 20 000 under the label `long`; tests/fuzz/run says how many it wants.
 function(suite_fuzz place)
   suite_test(${place} ${ARGN})
   _suite_test_name(${place} name label)
   add_test(NAME ${name}_long COMMAND ${name})
-  set_tests_properties(${name}_long PROPERTIES LABELS "long" TIMEOUT 1500 ENVIRONMENT "SUITE_FUZZ_SECONDS=30;${SUITE_LEAKS}")
+  set_tests_properties(${name}_long PROPERTIES LABELS "long" TIMEOUT 1500 ENVIRONMENT "SUITE_FUZZ_COUNT=20000;${SUITE_LEAKS}")
 endfunction()

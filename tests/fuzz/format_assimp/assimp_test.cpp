@@ -28,7 +28,7 @@ const std::vector<std::string> kWords{"99999999999",          "-1", " nan ",    
                                       "count=\"4000000000\"", "#g", "<polylist/>"};
 
 // Each is read in a process of its own: fewer than elsewhere.
-TEST(FuzzAssimp, Collada) { test::fuzz(test::bytes_of(kTriangle), read_and_check, 1, 2000, 4, kWords); }
+TEST(FuzzAssimp, Collada) { test::fuzz(test::bytes_of(kTriangle), read_and_check, 1, test::kMutations, kWords); }
 
 TEST(FuzzAssimp, WhatTheFileSaysIsDone) {
   Report report(scene_issues());
