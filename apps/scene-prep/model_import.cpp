@@ -160,7 +160,7 @@ Draft read(const std::string& path, const ImportOptions& options, Report& report
                     (m.texture ? "its texture is uplifted to spectra"
                      : guessed ? strf("a spectrum is guessed from the display colour (%.3f, %.3f, %.3f)", m.rgb[0],
                                       m.rgb[1], m.rgb[2])
-                             : strf("a grey of reflectance %g stands in", kStandIn))});
+                               : strf("a grey of reflectance %g stands in", kStandIn))});
   }
   TrackedInputs inputs(path, options.search);
   const Params root = Params::parse_made(made.yaml, path, {}, options.settings);

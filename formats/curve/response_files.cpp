@@ -1,6 +1,6 @@
-// Spectral responses in netCDF-4 (which is HDF5) as agencies publish them: one variable of wavelengths, one of responses
-// with a dimension of bands, or a variable of responses a band.
-// Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions", 1.11 (units, missing and packed values).
+// Spectral responses in netCDF-4 (which is HDF5) as agencies publish them: one variable of wavelengths, one of
+// responses with a dimension of bands, or a variable of responses a band. Based on: "NetCDF Climate and Forecast (CF)
+// Metadata Conventions", 1.11 (units, missing and packed values).
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -37,8 +37,8 @@ std::optional<Unit> unit_of(const std::string& text) {
   const std::string u = lower(text);
   for (const char* name : {"nm", "nanometer", "nanometers", "nanometre", "nanometres"})
     if (u == name) return Unit{1e-3};
-  for (const char* name : {"um", "micron", "microns", "micrometer", "micrometers", "micrometre", "micrometres", "1e-6 m",
-                           "\u00b5m", "\u03bcm"})
+  for (const char* name : {"um", "micron", "microns", "micrometer", "micrometers", "micrometre", "micrometres",
+                           "1e-6 m", "\u00b5m", "\u03bcm"})
     if (u == name) return Unit{1};
   for (const char* name : {"m", "meter", "meters", "metre", "metres"})
     if (u == name) return Unit{1e6};
@@ -92,13 +92,13 @@ std::string ResponseFile::wavelength_variable() const {
   std::vector<std::string> found;
   for (const std::string& v : variables_) {
     const std::string name = last_name(v);
-    if (has_any(name, {"wavelength", "wavenumber", "lambda"}) && !has_any(name, {"central", "center", "centre", "number"}))
+    if (has_any(name, {"wavelength", "wavenumber", "lambda"}) &&
+        !has_any(name, {"central", "center", "centre", "number"}))
       found.push_back(v);
   }
   for (const std::string& v : variables_)
     if (last_name(v).find("wavenumber") != std::string::npos && found.empty()) found.push_back(v);
-  if (found.empty())
-    fail("has no variable of wavelengths", "a variable 'wavelength' with 'units' (nm, um, m or cm-1)");
+  if (found.empty()) fail("has no variable of wavelengths", "a variable 'wavelength' with 'units' (nm, um, m or cm-1)");
   if (found.size() > 1)
     fail("has several variables of wavelengths: '" + printable(found[0]) + "', '" + printable(found[1]) + "'",
          "keep one: ncks -x -v VARIABLE IN.nc OUT.nc");
@@ -144,8 +144,8 @@ ResponseFile::Table ResponseFile::numbers(const std::string& variable) const {
   Table t = file_.table(variable);
   const double scale = file_.number(variable, "scale_factor").value_or(1),
                offset = file_.number(variable, "add_offset").value_or(0);
-  const std::optional<double> fill = file_.number(variable, "_FillValue"), missing =
-                                                                               file_.number(variable, "missing_value");
+  const std::optional<double> fill = file_.number(variable, "_FillValue"),
+                              missing = file_.number(variable, "missing_value");
   for (double& v : t.values) v = (fill && v == *fill) || (missing && v == *missing) ? NAN : v * scale + offset;
   return t;
 }
@@ -195,7 +195,8 @@ std::vector<NamedCurve> ResponseFile::read() const {
   std::vector<NamedCurve> bands;
   if (file_.kind(variables[0]).dimensions == 1) {
     if (waves.rows > 1)
-      fail("the wavelengths have two dimensions, the responses one", "responses with the dimensions (band, wavelength)");
+      fail("the wavelengths have two dimensions, the responses one",
+           "responses with the dimensions (band, wavelength)");
     for (const std::string& v : variables) {
       const Table t = numbers(v);
       bands.push_back(band(printable(v.substr(v.rfind('/') + 1)), waves, 0, t.values, unit_of_waves));

@@ -13,7 +13,10 @@ constexpr size_t kMostBytes = size_t{1} << 30;  // of one image
 std::string plain_name(const std::string& uri) {
   std::string name;
   const auto digit = [](char c) -> int {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
   };
   for (size_t i = 0; i < uri.size(); ++i) {
     const bool escaped = uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0;
@@ -23,8 +26,8 @@ std::string plain_name(const std::string& uri) {
   return name;
 }
 
-std::vector<std::byte> bytes_of(const tinygltf::Model& model, const std::string& file, int index,
-                                const std::string& at, const Resolve& resolve) {
+std::vector<std::byte> bytes_of(const tinygltf::Model& model, const std::string& file, int index, const std::string& at,
+                                const Resolve& resolve) {
   const tinygltf::Image& image = item_of(model.images, index, file, at, "image");
   const std::string pointer = strf("images[%d]", index);
   if (image.bufferView < 0 && !image.uri.empty()) return read_bytes(resolve(plain_name(image.uri)), kMostBytes);
@@ -36,8 +39,8 @@ std::vector<std::byte> bytes_of(const tinygltf::Model& model, const std::string&
       item_of(model.bufferViews, image.bufferView, file, pointer + "/bufferView", "buffer view");
   const auto& data = item_of(model.buffers, view.buffer, file, pointer + "/bufferView", "buffer").data;
   if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-    throw fault(file, pointer, strf("%zu bytes from %zu on, the buffer has %zu", view.byteLength, view.byteOffset,
-                                    data.size()));
+    throw fault(file, pointer,
+                strf("%zu bytes from %zu on, the buffer has %zu", view.byteLength, view.byteOffset, data.size()));
   const std::byte* first = reinterpret_cast<const std::byte*>(data.data()) + view.byteOffset;
   return {first, first + view.byteLength};
 }
@@ -50,7 +53,7 @@ SourceTexture::Extend extend_of(const tinygltf::Sampler& sampler, const std::str
   else if (sampler.wrapS != sampler.wrapT)
     report.add("SP707", file, {Where{file, 0, 0, {}, -1}, pointer + ": goes on in v as it does in u"});
   return sampler.wrapS == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ? SourceTexture::Extend::clamp
-                                                             : SourceTexture::Extend::repeat;
+                                                              : SourceTexture::Extend::repeat;
 }
 
 }  // namespace
@@ -71,8 +74,7 @@ std::shared_ptr<const SourceTexture> texture_of(const tinygltf::Model& model, co
   made->name = file + ": " + pointer;
   made->bytes = bytes_of(model, file, texture.source, pointer + "/source", resolve);
   if (texture.sampler < 0) return made;
-  const tinygltf::Sampler& sampler =
-      item_of(model.samplers, texture.sampler, file, pointer + "/sampler", "sampler");
+  const tinygltf::Sampler& sampler = item_of(model.samplers, texture.sampler, file, pointer + "/sampler", "sampler");
   made->extend = extend_of(sampler, file, pointer, report);
   made->smooth = sampler.magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST;
   return made;

@@ -28,8 +28,10 @@ std::vector<std::string> texts_of(hid_t stored, size_t count, const Read& read) 
     std::vector<char*> text(count, nullptr);
     if (read(type, text.data()) < 0) return {};
     for (char* t : text) {
-      if (t) out.push_back(trimmed(std::string(t, strnlen(t, kLongest))));
-      else out.emplace_back();
+      if (t)
+        out.push_back(trimmed(std::string(t, strnlen(t, kLongest))));
+      else
+        out.emplace_back();
       H5free_memory(t);
     }
     return out;

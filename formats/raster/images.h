@@ -38,8 +38,8 @@ struct ImageToWrite {
 
 // What the part `images` exports as suite_image_calls.
 struct ImageCalls {
-  // packed: the file's bytes, whose format the path's extension says; empty: they are in the file. room: called with the
-  // facts filled in, tells where the values (row-major, channels together) go; may throw.
+  // packed: the file's bytes, whose format the path's extension says; empty: they are in the file. room: called with
+  // the facts filled in, tells where the values (row-major, channels together) go; may throw.
   ImageRead (*read)(const std::string& path, std::span<const std::byte> packed, ImageFacts& facts,
                     const std::function<float*()>& room);
   // row: the values of a row, valid until the next call. bytes: the file. Returns what went wrong; empty = nothing.

@@ -105,10 +105,10 @@ std::string Report::text() const {
                   at->second.count, k.summary.c_str()) +
              examples_text(at->second.examples) + hint_text(k);
     if (folded && at != end)
-      out += strf("%zu files or objects: %s [%s] x%zu: %s\n    most, x%zu, in %s:\n", assets, to_text(k.severity),
-                  k.code.c_str(), faults, k.summary.c_str(), worst->second.count,
-                  printable(worst->first.second).c_str()) +
-             examples_text(worst->second.examples) + hint_text(k);
+      out +=
+          strf("%zu files or objects: %s [%s] x%zu: %s\n    most, x%zu, in %s:\n", assets, to_text(k.severity),
+               k.code.c_str(), faults, k.summary.c_str(), worst->second.count, printable(worst->first.second).c_str()) +
+          examples_text(worst->second.examples) + hint_text(k);
     at = end;
   }
   // Many faults of few kinds are one thing to mend, however many they are.

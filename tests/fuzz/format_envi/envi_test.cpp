@@ -61,7 +61,8 @@ TEST(Fuzz, EnviImage) {
                const EnviImage image(folder / "a.img");
                EXPECT_EQ(image.read_all().size(), image.header().values());
              },
-             2, test::kMutations, {"=", "{", "}", "-1", "999999999", "bsq", "bip", "data type = 5", "header offset = 8"});
+             2, test::kMutations,
+             {"=", "{", "}", "-1", "999999999", "bsq", "bip", "data type = 5", "header offset = 8"});
 }
 
 }  // namespace suite

@@ -36,7 +36,9 @@ const std::vector<std::string> kWords{
     "<part>",   "</part>", "<filter type=\"scale\">", "1e999", "nan", ";;", "&#10;", "\" ", "objloader", "<scene/>",
     "onGround", "-1"};
 
-TEST(FuzzHelios, Scene) { test::fuzz(test::bytes_of(test::helios_scene()), read_and_check, 1, test::kMutations, kWords); }
+TEST(FuzzHelios, Scene) {
+  test::fuzz(test::bytes_of(test::helios_scene()), read_and_check, 1, test::kMutations, kWords);
+}
 
 TEST(FuzzHelios, Points) {
   test::fuzz(

@@ -12,8 +12,7 @@ TEST(FuzzIes, Text) {
   test::fuzz(
       test::bytes_of(file),
       [](std::span<const std::byte> bytes) {
-        const IesLuminaire lamp =
-            parse_ies({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "fuzz.ies");
+        const IesLuminaire lamp = parse_ies({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "fuzz.ies");
         double lost = 0;
         intensity_table(lamp, lost);
       },

@@ -138,8 +138,8 @@ TEST_F(FuzzScene, Emissivity) {
   std::string ems = "2\n";
   for (int k = 0; k < 91; ++k) ems += "1.0\n";
   ems += "CURVE_BEGIN\n0.4\t0.9\n0.8\t0.7\nCURVE_BEGIN\n0.4 0.5\n";
-  test::fuzz(test::bytes_of(ems), as_file("c.ems", [](const std::string& p) { read_curve_family(p, {}); }), 7, test::kMutations,
-             {"CURVE_BEGIN", "CURVE_END", "99999", "\n", "0"});
+  test::fuzz(test::bytes_of(ems), as_file("c.ems", [](const std::string& p) { read_curve_family(p, {}); }), 7,
+             test::kMutations, {"CURVE_BEGIN", "CURVE_END", "99999", "\n", "0"});
 }
 
 TEST_F(FuzzScene, SpectralLibrary) {
@@ -149,8 +149,8 @@ TEST_F(FuzzScene, SpectralLibrary) {
       "ENVI\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\nwavelength units = Nanometers\nspectra names = {a, "
       "b}\nwavelength = {400, 500,\n 800}\n";
   test::fuzz(test::bytes_of(header),
-             as_file("l.sli.hdr", [&](const std::string&) { read_curve_family(folder_ / "l.sli", {}); }), 8, test::kMutations,
-             {"{", "}", "=", ",", "99999999999", "-1", "\n", "wavelength"});
+             as_file("l.sli.hdr", [&](const std::string&) { read_curve_family(folder_ / "l.sli", {}); }), 8,
+             test::kMutations, {"{", "}", "=", ",", "99999999999", "-1", "\n", "wavelength"});
 }
 
 TEST_F(FuzzScene, InstanceTable) {

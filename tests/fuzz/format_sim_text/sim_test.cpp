@@ -85,7 +85,8 @@ void read(const TempFolder& folder, std::span<const std::byte> bytes) {
 TEST(FuzzSim, SourcesAndSimpleSensors) {
   const TempFolder folder;
   test::fuzz(
-      test::bytes_of(kSources + kSensors), [&](std::span<const std::byte> b) { read(folder, b); }, 1, test::kMutations, kWords);
+      test::bytes_of(kSources + kSensors), [&](std::span<const std::byte> b) { read(folder, b); }, 1, test::kMutations,
+      kWords);
 }
 
 TEST(FuzzSim, Platform) {

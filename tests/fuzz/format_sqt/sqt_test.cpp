@@ -31,9 +31,7 @@ void resealed(std::span<const std::byte> bytes) {
 const std::vector<std::string> kWords{"\"leaves\":", "\"sheets\":2", "1e308", "-1",   "99999999", "\"phi_count\":1000",
                                       "[",           "\"half\"",     "null",  "paper"};
 
-TEST(FuzzSqt, Aligned) {
-  test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), parse_and_ask);
-}
+TEST(FuzzSqt, Aligned) { test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), parse_and_ask); }
 TEST(FuzzSqt, AlignedBehindTheChecksum) {
   test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), resealed, 2, test::kMutations, kWords);
 }

@@ -82,7 +82,8 @@ TEST_F(MadeResponses, FaultsNameTheVariableAndTheCure) {
   EXPECT_THAT(fault({{"/wavelength", {400, 420, 410}, "nm"}, one}), HasSubstr("wavelength 0.41 um follows 0.42 um"));
   EXPECT_THAT(fault({{"/wavelength", {400, 410, 420}, "m"}, one}), HasSubstr("are the units right?"));
   EXPECT_THAT(fault({nm, {"/response", {0, 0, 0}, "1"}}), HasSubstr("no response other than 0"));
-  EXPECT_THAT(fault({nm, {"/response", {0, 1, 0, 0, 1, 0, 0, 1, 0}, "1", 3}}), HasSubstr("as many bands as wavelengths"));
+  EXPECT_THAT(fault({nm, {"/response", {0, 1, 0, 0, 1, 0, 0, 1, 0}, "1", 3}}),
+              HasSubstr("as many bands as wavelengths"));
 }
 
 }  // namespace

@@ -123,7 +123,8 @@ TEST_F(Textures, AreRefusedWhereTheyCannotBeRead) {
   };
   write_file(folder_ / "none.gltf", file(R"({"uri":"none.png"})").text_);
   EXPECT_THAT(told("none.gltf", "uplift: texel"), HasSubstr("its file 'none.png': no such file"));
-  write_file(folder_ / "text.glb", file(R"({"bufferView":4,"mimeType":"image/png"})", std::vector<std::byte>(40)).binary_);
+  write_file(folder_ / "text.glb",
+             file(R"({"bufferView":4,"mimeType":"image/png"})", std::vector<std::byte>(40)).binary_);
   EXPECT_THAT(told("text.glb", "uplift: texel"), HasSubstr("is no PNG and no JPEG"));
   std::vector<std::byte> half = read_bytes(folder_ / "a leaf.png");
   half.resize(half.size() / 2);

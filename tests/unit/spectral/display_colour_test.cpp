@@ -56,8 +56,7 @@ LinearRgb seen(const Curve& reflectance) {
 double off(const LinearRgb& display, const Curve& reflectance) {
   const LinearRgb back = seen(reflectance);
   double worst = 0;
-  for (size_t c = 0; c < 3; ++c)
-    worst = std::max(worst, 255 * std::fabs(srgb_from_linear(back[c]) - display[c]));
+  for (size_t c = 0; c < 3; ++c) worst = std::max(worst, 255 * std::fabs(srgb_from_linear(back[c]) - display[c]));
   return worst;
 }
 
