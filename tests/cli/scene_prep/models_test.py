@@ -373,6 +373,23 @@ class Models(unittest.TestCase):
         self.assertIn("its texture is uplifted to spectra", said)
         self.assertIn("1 materials are matte with reflectances uplifted from display colours, 1 of them from textures", said)
 
+    def test_warnings_of_200_objects(self):
+        """Each object has a triangle without area, one has three: told once, with the worst."""
+        objects = ""
+        for k in range(200):
+            with open(f"{WORK}/part_{k}.obj", "w", encoding="utf-8") as f:
+                f.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\n" + "f 1 2 4\n" * (3 if k == 123 else 1))
+            objects += f"  part_{k}: {{obj: part_{k}.obj, material: paint}}\n"
+        with open(WORK + "/parts.yaml", "w", encoding="utf-8") as f:
+            f.write("scene: 1\nmaterials: {paint: {model: lambert, reflectance: 0.5}}\nobjects:\n" + objects + "world:\n"
+                    + "".join(f"  - {{place: part_{k}, translate: [{3 * k}, 0, 0]}}\n" for k in range(200)))
+        code, said = prepare(WORK + "/parts.yaml")
+        self.assertEqual(code, 0, said)
+        self.assertIn("200 files or objects: warning [SP302] x202: a triangle has no area", said)
+        self.assertRegex(said, r"most, x3, in \S*part_123\.obj:")
+        self.assertIn("hint: --repair drops it", said)
+        self.assertLess(said.count("\n"), 40, said)
+
     def test_in_a_scene(self):
         with open(WORK + "/scene.yaml", "w", encoding="utf-8") as f:
             f.write("scene: 1\nmaterials: {paint: {model: lambert, reflectance: 0.5}}\n"
