@@ -35,12 +35,12 @@ TEST(TrackFilesFuzz, Czml) {
       test::bytes_of(
           "[{\"id\":\"document\"},{\"id\":\"a\",\"availability\":\"2024-01-01T00:00:00Z/2024-01-01T00:01:00Z\","
           "\"position\":{\"epoch\":\"2024-01-01T00:00:00Z\",\"interpolationAlgorithm\":\"LAGRANGE\","
-          "\"interpolationDegree\":3,\"cartographicDegrees\":[0,9,48,10,9.1,48,5,9.2,48,6]},\"orientation\":"
+          "\"interpolationDegree\":3,\"cartographicDegrees\":[0,9,48,5,10,9.1,48,5,20,9.2,48,6]},\"orientation\":"
           "{\"velocityReference\":\"#position\"}},{\"id\":\"b\",\"position\":{\"cartesian\":[7e6,0,0]},"
           "\"orientation\":{\"unitQuaternion\":[0,0,0,1]}},{\"id\":\"c\",\"position\":[{\"interval\":\"2024-01-01T00:"
           "00:00Z/"
           "2024-01-01T00:00:09Z\",\"epoch\":\"2024-01-01T00:00:00Z\",\"interpolationAlgorithm\":\"HERMITE\","
-          "\"cartesianVelocity\":[0,7e6,0,0,2,3,7e6,9,9,2,3]},{\"interval\":\"2024-01-01T00:00:09Z/"
+          "\"cartesianVelocity\":[0,7e6,0,0,1,2,3,9,7e6,9,9,1,2,3]},{\"interval\":\"2024-01-01T00:00:09Z/"
           "2024-01-01T00:01:00Z\",\"cartesian\":[7e6,0,0]}]}]"),
       [&](std::span<const std::byte> b) { read(text_of(b), {context}); }, 7, test::kMutations,
       {"cartesian", "LINEAR", "1e300", "-1", "\"interval\":", "[", "{", "null", "2024-02-30T00:00:00Z", "/", "FIXED"});

@@ -12,8 +12,8 @@ void check(std::span<const std::byte> b) {
 
 TEST(FuzzProfile, Table) {
   test::fuzz(
-      test::bytes_of("height_km,temperature_c,pressure_hpa,relative_humidity_percent,o3_ppmv\n0,20,1013,0.02\n"
-                     "1, 10, 900,0.03 # second\n10,-50,265,20,0.1\n"),
+      test::bytes_of("height_km,temperature_c,pressure_hpa,relative_humidity_percent,o3_ppmv\n0,20,1013,60,0.02\n"
+                     "1, 10, 900,50,0.03 # second\n10,-50,265,20,0.1\n"),
       check, 11, test::kMutations,
       {"height_m", "pressure_pa", "dew_point_c", "h2o_g_per_kg", "n2_fraction", "-273.15", "1e300", "nan", ",", "#"});
 }

@@ -154,7 +154,7 @@ TEST_F(FuzzScene, SpectralLibrary) {
 }
 
 TEST_F(FuzzScene, InstanceTable) {
-  test::fuzz(test::bytes_of("x,y,z,heading_deg,scale\n1,2,3,2\n-1, 0.5, 0, 0, 1\n"),
+  test::fuzz(test::bytes_of("x,y,z,heading_deg,scale\n1,2,3,270,2\n-1, 0.5, 0, 0, 1\n"),
              as_file("t.csv", [](const std::string& p) { read_instances(p); }), 9, test::kMutations,
              {"qw", ",", "nan", "1e999", "scale", "\n", "#", "0"});
 }

@@ -20,9 +20,9 @@ TEST(FuzzVoxel, Text) {
   test::fuzz(
       test::bytes_of(
           "voxels: 1\ncells: [2, 3, 4]\ncell_m: [0.5, 1, 2]\norigin_m: [1, 2, 3]\nfields:\n  density: {file: d.u8, "
-          "type: uint8, scale: 0.5}\n  temperature_k: 300\n  medium: {values: [0, 1, 0, 0, 1, 1, 0, 0, 1, "
+          "type: uint8, scale: 0.5}\n  temperature_k: 300\n  medium: {values: [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, "
           "1, "
-          "0, 1, 0, 0, 1, 1, 0, 1]}\n"),
+          "0, 1, 0, 1, 0, 1, 0, 1, 0, 1]}\n"),
       read, 1, test::kMutations,
       {"{", "}", "[", "]", ": ", "nan", "1e999", "-1", "0", "1e6", "999999", "float64", "material", "\n", "  "});
 }

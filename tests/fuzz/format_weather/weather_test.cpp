@@ -23,7 +23,7 @@ void check(std::span<const std::byte> b, const WeatherOptions& options) {
 void fuzz(const std::string& text, uint64_t seed, const std::vector<std::string>& words,
           const WeatherOptions& options = {}) {
   test::fuzz(
-      test::bytes_of(text), [&](std::span<const std::byte> b) { check(b, options); }, seed, test::kMutations, 2, words);
+      test::bytes_of(text), [&](std::span<const std::byte> b) { check(b, options); }, seed, test::kMutations, words);
 }
 
 // The first lines and a day of rows.
@@ -67,14 +67,14 @@ TEST(WeatherFuzz, Wth) {
   std::string text = "5 0.25\n";
   for (int i = 0; i < 5; ++i) text += strf("%5.2f-15.00 1012.5 0.68-20.00 2.0 0.0 0.0 0.9 2 0 0.0 0.0\n", 0.25 * i);
   fuzz(text, 25, {"193 0.25\n", "-", "1e300", "nan", "0.25", "98.0"},
-       {.site = Geodetic{43.1, -77.6, 150}, .utc_offset = -5 * 3600.0, .date = Utc{1992, 6, 22, 0, 0}});
+       {.site = Geodetic{43.1, -77.6, 150}, .utc_offset = -5 * 3600.0, .date = Utc{1992, 6, 22, 0, 0, 0}});
 }
 
 TEST(WeatherFuzz, Csv) {
   fuzz(
       "site: 39.83 -104.65 1650\nutc_offset: -7\nstamps: begin\n"
       "time_local, air_temperature [C], dew_point mean [K], wind_from [deg], global [W/m2], cloud_cover [%]\n"
-      "2020-01-01T01:00, -5, 260, 0, 10\n2020-01-01T02:00, -6, , 90, 0, 20\n2020-01-01T03:00, -7, 262, 350, 30\n",
+      "2020-01-01T01:00, -5, 260, 0, 0, 10\n2020-01-01T02:00, -6, , 90, 0, 20\n2020-01-01T03:00, -7, 262, 350, 0, 30\n",
       26,
       {"time_utc", "[K]", "[%]", "2199-12-31T23:00", "1972-01-01", "site:", "utc_offset: 14", "end", "nan", "1e300",
        ",", "#"});
