@@ -36,6 +36,12 @@ auto of_file(const Read& read) {
   }
 }
 
+// How display colours of a model become spectra; texels: of its images so far.
+struct UpliftRule {
+  bool by_texel = true;
+  size_t classes = 64, texels = 0;
+};
+
 // A raster, and what an ENVI image says of its bands.
 struct MapRaster : Raster {
   std::vector<double> wavelength_um;  // empty or one a channel
@@ -92,8 +98,8 @@ class Reader {
   void read_city_mesh(const Params& p, DraftGeometry& g);
   void forget_temperatures(const Params& p, SourceMesh& mesh);
   // textures.cpp
-  std::array<double, 3> read_texture(const Params& p, const SourceMaterial& from, const std::string& id, bool by_texel,
-                                     size_t classes);
+  std::array<double, 3> read_texture(const Params& p, const SourceMaterial& from, const std::string& id,
+                                     UpliftRule& rule);
   void read_textures(const Params& p, const SourceModel& model, DraftGeometry& g);
   // points.cpp
   void read_points(const Params& p, DraftGeometry& g);

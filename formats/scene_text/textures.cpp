@@ -12,14 +12,10 @@ namespace suite::scene_text {
 
 namespace {
 
-// 17 numbers of 4 bytes a texel, and one.
-constexpr size_t kMostTexels = size_t{1} << 24, kMostInClasses = size_t{1} << 26;
+// Of one image, as it is unpacked; of all images of an object, of which a texel is kept as 17 numbers of 4 bytes, or
+// one.
+constexpr size_t kMostUnpacked = size_t{1} << 25, kMostTexels = size_t{1} << 24, kMostInClasses = size_t{1} << 27;
 constexpr size_t kChannels = kUpliftedWaves;
-
-struct UpliftRule {
-  bool by_texel = true;
-  size_t classes = 64;
-};
 
 UpliftRule rule_of(const Params& p) {
   UpliftRule rule;
@@ -81,19 +77,27 @@ void fill_texels(std::span<const float> display, bool smooth, PropertyMap& map) 
 }  // namespace
 
 // The map of a material's texture; its mean is where the material has no map.
-LinearRgb Reader::read_texture(const Params& p, const SourceMaterial& from, const std::string& id, bool by_texel,
-                               size_t classes) {
+LinearRgb Reader::read_texture(const Params& p, const SourceMaterial& from, const std::string& id, UpliftRule& rule) {
   const SourceTexture& texture = *from.texture;
-  const Raster picture = read_picture(texture.bytes, texture.name, by_texel ? kMostTexels : kMostInClasses);
+  const Raster picture = read_picture(texture.bytes, texture.name, kMostUnpacked);
+  rule.texels += size_t{picture.width} * picture.height;
+  if (rule.by_texel && rule.texels > kMostTexels)
+    throw p.error(strf("the textures up to '%s' have %zu texels, at most %zu become spectra one by one",
+                       printable(texture.name).c_str(), rule.texels, kMostTexels),
+                  "'uplift: classes', or smaller images");
+  if (rule.texels > kMostInClasses)
+    throw p.error(strf("the textures up to '%s' have %zu texels, at most %zu are read", printable(texture.name).c_str(),
+                       rule.texels, kMostInClasses),
+                  "smaller images");
   const std::vector<float> display = coloured(picture, from.rgb);
   DraftPropertyMap m;
   m.where = p.where();
   m.map = laid(texture, picture, id);
   const Where where{texture.name, 0, 0, {}, -1};
-  if (by_texel) {
+  if (rule.by_texel) {
     fill_texels(display, texture.smooth, m.map);
   } else {
-    const ColourClasses found = classify_colours(display, classes);
+    const ColourClasses found = classify_colours(display, rule.classes);
     m.map.kind = MapKind::curve_index;
     m.map.channels = 1;
     m.map.values.assign(found.number.begin(), found.number.end());
@@ -108,9 +112,10 @@ LinearRgb Reader::read_texture(const Params& p, const SourceMaterial& from, cons
 
 // Of the model's materials those that the text has not: NAME/MATERIAL, matte, with the spectra of their colours.
 void Reader::read_textures(const Params& p, const SourceModel& model, DraftGeometry& g) {
-  const UpliftRule rule = rule_of(p);
+  UpliftRule rule = rule_of(p);
   size_t made = 0, textured = 0;
   std::string first;
+  std::map<std::pair<std::string, LinearRgb>, std::pair<std::string, LinearRgb>> known_maps;  // id and mean
   for (const SourceMaterial& from : model.materials) {
     const auto known = [&](const DraftMaterial& m) { return m.material.id == from.name; };
     if (g.materials.count(from.name) || std::ranges::any_of(draft_.materials, known)) continue;
@@ -124,8 +129,10 @@ void Reader::read_textures(const Params& p, const SourceModel& model, DraftGeome
     m.material.id = id;
     LinearRgb colour = from.rgb;
     if (from.texture) {
-      colour = read_texture(p, from, id, rule.by_texel, rule.classes);
-      m.property_maps.push_back({id, p.where()});
+      const auto [known_map, fresh] = known_maps.try_emplace({from.texture->name, from.rgb});
+      if (fresh) known_map->second = {id, read_texture(p, from, id, rule)};
+      colour = known_map->second.second;
+      m.property_maps.push_back({known_map->second.first, p.where()});
     }
     m.material.description = strf("%s %.3f %.3f %.3f%s", kUplifted, colour[0], colour[1], colour[2],
                                   from.texture ? " (mean of its texture)" : "");

@@ -13,7 +13,7 @@ void read_and_check(std::span<const std::byte> bytes) {
 }
 
 TEST(FuzzPicture, Png) {
-  test::fuzz(read_bytes(SUITE_SOURCE_DIR "/sample_scenes/calibration_range/landcover.png"), read_and_check, 1, 500);
+  test::fuzz(read_bytes(SUITE_SOURCE_DIR "/sample_scenes/calibration_range/landcover.png"), read_and_check, 1, 200);
 }
 TEST(FuzzPicture, Jpeg) {
   test::Bytes jpeg = read_bytes(SUITE_SOURCE_DIR "/sample_scenes/crossing/picture.jpg");

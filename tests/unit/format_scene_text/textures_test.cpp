@@ -108,6 +108,19 @@ TEST_F(Textures, BecomeClasses) {
   EXPECT_THAT(report_.text(), HasSubstr("1 classes of colours: texels are"));
 }
 
+// An atlas that many materials share is one map.
+TEST_F(Textures, AreSharedByMaterials) {
+  std::string text = file(R"({"uri":"a%20leaf.png"})").text_;
+  const std::string plain = R"("baseColorFactor":[0.6,0.1,0.1,1])";
+  ASSERT_NE(text.find(plain), std::string::npos);
+  text.replace(text.find(plain), plain.size(), R"("baseColorFactor":[0.5,1,1,1],"baseColorTexture":{"index":0})");
+  write_file(folder_ / "atlas.gltf", text);
+  const Scene s = bake("atlas.gltf", "uplift: texel");
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  EXPECT_EQ(s.property_maps.size(), 1u);
+  EXPECT_EQ(s.property_bindings.size(), 2u);
+}
+
 TEST_F(Textures, LeaveMaterialsOfTheTextAlone) {
   const Scene s = bake("inside.glb", "uplift: texel", "materials: {leaf: {model: lambert, reflectance: 0.3}}\n");
   ASSERT_TRUE(report_.ok()) << report_.text();
