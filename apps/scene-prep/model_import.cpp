@@ -17,6 +17,7 @@
 #include "formats/stl/stl.h"
 #include "motion/map_system.h"
 #include "scene/issues.h"
+#include "spectral/display_colour.h"
 
 namespace suite {
 
@@ -41,13 +42,13 @@ std::string kind_of(const std::string& path, std::string_view head) {
 
 bool sniff(const std::string& path, std::string_view head) { return !kind_of(path, head).empty(); }
 
-// A curve from a display colour: three flat parts with ramps between them, which sum to 1, so that grey stays grey.
-// What lies outside of the visible is held; that is a guess and no measurement.
-std::string uplifted(const std::array<double, 3>& rgb) {
-  return strf(
-      "{points: [[0.38, %.4f], [0.485, %.4f], [0.505, %.4f], [0.575, %.4f], [0.6, %.4f], [0.78, %.4f]], "
-      "outside: hold}",
-      rgb[2], rgb[2], rgb[1], rgb[1], rgb[0], rgb[0]);
+// A curve from a display colour, as a text.
+std::string uplifted_text(const LinearRgb& rgb) {
+  const auto waves = uplifted_wavelengths_um();
+  const auto values = uplifted_values(rgb);
+  std::string points;
+  for (size_t i = 0; i < waves.size(); ++i) points += strf("%s[%g, %.4f]", i ? ", " : "", waves[i], values[i]);
+  return "{points: [" + points + "], outside: hold}";
 }
 
 struct Made {
@@ -65,6 +66,7 @@ std::vector<SourceMaterial> materials_of(const std::string& path, const std::str
   SourceModelOptions how;
   how.name = "model", how.where = {path, 0, 0, {}, -1}, how.animation = "none";
   how.resolve = [&](const std::string& name) { return inputs.path_of(name); };
+  how.textures = options.uplift;
   const SourceModel model = kind == "gltf" ? read_gltf(path, how, unheard) : read_assimp(path, how, nullptr, unheard);
   nameless = std::any_of(model.meshes.begin(), model.meshes.end(), [](const SourceModel::Part& part) {
     return std::any_of(part.mesh.runs.begin(), part.mesh.runs.end(), [](auto& run) { return run.material.empty(); });
@@ -80,7 +82,7 @@ std::string place_city(const std::string& path, Made& made) {
   std::set<std::string> kinds;
   for (const CityModel::Object& object : city.objects)
     for (const CityModel::Surface& surface : object.surfaces) kinds.insert(surface.kind);
-  for (const std::string& kind : kinds) made.materials.push_back({kind, {}});
+  for (const std::string& kind : kinds) made.materials.push_back({kind, {}, nullptr});
   const Box3 box = extent_of(city);
   if (box.empty() || !finite(box.center())) return "";
   const Vec3 at{box.center().x, box.center().y, box.low.z};
@@ -112,15 +114,23 @@ Made text_of(const std::string& path, const std::string& file, const std::string
   if (kind == "city") keys = place_city(path, made), nameless = false;
   const std::string name = yaml_quoted(std::filesystem::path(path).stem().string());
   std::string& y = made.yaml;
-  y = "scene: 1\nname: " + name + "\n" + made.origin + "materials:\n";
+  y = "scene: 1\nname: " + name + "\n" + made.origin;
+  if (nameless || std::ranges::any_of(made.materials, [](const SourceMaterial& m) { return !m.texture; }))
+    y += "materials:\n";
+  bool textures = false;
   for (const SourceMaterial& m : made.materials) {
     const bool uplift = options.uplift && made.colours;
-    y += strf("  %s: {model: lambert, reflectance: %s, description: \"%s, display colour %.3f %.3f %.3f\"}\n",
-              yaml_quoted(m.name).c_str(), uplift ? uplifted(m.rgb).c_str() : strf("%g", kStandIn).c_str(),
-              uplift ? "guessed" : "stand-in", m.rgb[0], m.rgb[1], m.rgb[2]);
+    if (m.texture) {
+      textures = true;  // its object makes the material
+      continue;
+    }
+    y += strf("  %s: {model: lambert, reflectance: %s, description: \"%s %.3f %.3f %.3f\"}\n",
+              yaml_quoted(m.name).c_str(), uplift ? uplifted_text(m.rgb).c_str() : strf("%g", kStandIn).c_str(),
+              uplift ? kUplifted : "stand-in, display colour", m.rgb[0], m.rgb[1], m.rgb[2]);
   }
+  if (textures) keys += ", textures: {uplift: texel}";
   if (nameless) {
-    made.materials.push_back({kNameless, {}});
+    made.materials.push_back({kNameless, {}, nullptr});
     y += strf("  %s: {model: lambert, reflectance: %g, description: stand-in}\n", kNameless, kStandIn);
   }
   y += "objects:\n  " + name + ": {" + kind + ": " + yaml_quoted(file) + keys +
@@ -147,9 +157,10 @@ Draft read(const std::string& path, const ImportOptions& options, Report& report
     report.add("SP708", path,
                {Where{path, 0, 0, {}, -1},
                 "material '" + m.name + "': " +
-                    (guessed ? strf("a spectrum is guessed from the display colour (%.3f, %.3f, %.3f)", m.rgb[0],
-                                    m.rgb[1], m.rgb[2])
-                             : strf("a grey of reflectance %g stands in", kStandIn))});
+                    (m.texture ? "its texture is uplifted to spectra"
+                     : guessed ? strf("a spectrum is guessed from the display colour (%.3f, %.3f, %.3f)", m.rgb[0],
+                                      m.rgb[1], m.rgb[2])
+                               : strf("a grey of reflectance %g stands in", kStandIn))});
   }
   TrackedInputs inputs(path, options.search);
   const Params root = Params::parse_made(made.yaml, path, {}, options.settings);

@@ -153,7 +153,7 @@ void Builder::materials() {
     for (const SourceMesh::Run& run : part.mesh.runs) used.insert(run.material);
   for (const AssimpMaterial& m : model_.materials)
     if (!m.name.empty() && used.erase(m.name)) {
-      SourceMaterial& made = result_.materials.emplace_back(SourceMaterial{m.name, m.rgb});
+      SourceMaterial& made = result_.materials.emplace_back(SourceMaterial{m.name, m.rgb, nullptr});
       for (double& c : made.rgb) c = std::isfinite(c) ? std::clamp(c, 0.0, 1.0) : 1;
     }
 }

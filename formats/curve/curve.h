@@ -33,7 +33,7 @@ Curve read_curve(const std::string& path, const CurveOptions& options);
 std::vector<Curve> read_curve_family(const std::string& path, const CurveOptions& options);
 
 // The spectral responses of several bands from one table: a header line that names the columns, the first of them the
-// wavelength with its unit, then rows. See FORMAT.md. Error with file and line.
+// wavelength with its unit, then rows; or from netCDF-4 or HDF5. See FORMAT.md. Error with file and line.
 std::vector<NamedCurve> read_responses(const std::string& path);
 
 // One curve from several that follow each other in wavelength: the rows of each up to where the next one takes over,

@@ -22,4 +22,10 @@ Curve read_table(const std::string& path, const CurveOptions& options);
 std::vector<NamedRows> read_sli(const std::string& path, const CurveOptions& options);
 std::vector<NamedRows> read_ems(const std::string& path, const CurveOptions& options);
 
+// A response from the zero before its first value to that after its last. Error: nothing but zeros.
+Curve response_of(std::vector<double> um, std::vector<double> value, const std::string& name, const std::string& path);
+// Responses of several bands in netCDF-4 or HDF5; by the file's first bytes, classic netCDF too, which is refused.
+bool is_response_file(const std::string& path);
+std::vector<NamedCurve> read_response_file(const std::string& path);
+
 }  // namespace suite

@@ -7,7 +7,7 @@
 #include "base/files.h"
 #include "base/number_text.h"
 #include "base/text_lines.h"
-#include "formats/curve/curve.h"
+#include "formats/curve/internal.h"
 
 namespace suite {
 
@@ -66,21 +66,21 @@ void add_row(const std::vector<std::string>& cells, double to_um, const TextLine
   }
 }
 
-// From the zero before the first value to that after the last.
-Curve trimmed(std::vector<double> x, std::vector<double> y, const std::string& name, const std::string& path) {
+}  // namespace
+
+Curve response_of(std::vector<double> x, std::vector<double> y, const std::string& name, const std::string& path) {
   const auto some = [](double v) { return v != 0; };
   const auto first = std::ranges::find_if(y, some) - y.begin();
   const auto last = y.rend() - std::find_if(y.rbegin(), y.rend(), some);
   if (first >= last)
-    throw Error(Where{path, 0, 0, {}, -1}, "band '" + name + "' has no response other than 0", "remove its column");
+    throw Error(Where{path, 0, 0, {}, -1}, "band '" + name + "' has no response other than 0", "leave it out");
   const auto from = std::max<std::ptrdiff_t>(first - 1, 0), to = std::min<std::ptrdiff_t>(last + 1, std::ssize(y));
   return Curve({x.begin() + from, x.begin() + to}, {y.begin() + from, y.begin() + to}, Outside::zero,
                Where{path, 0, 0, {}, -1});
 }
 
-}  // namespace
-
 std::vector<NamedCurve> read_responses(const std::string& path) {
+  if (is_response_file(path)) return read_response_file(path);
   const std::string text = read_text(path, size_t{256} << 20);
   TextLines lines(text, path);
   Table table;
@@ -108,7 +108,7 @@ std::vector<NamedCurve> read_responses(const std::string& path) {
   }
   std::vector<NamedCurve> curves;
   for (size_t k = 0; k < table.names.size(); ++k)
-    curves.push_back({table.names[k], trimmed(std::move(table.x[k]), std::move(table.y[k]), table.names[k], path)});
+    curves.push_back({table.names[k], response_of(std::move(table.x[k]), std::move(table.y[k]), table.names[k], path)});
   if (curves.empty()) throw Error(Where{path, 0, 0, {}, -1}, "holds no table of responses");
   return curves;
 }

@@ -160,7 +160,10 @@ std::string one_line(std::string text) {
   return text.substr(0, 300);
 }
 
-bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+// Images stay packed. Those of buffer views lie there; those of data URIs are nowhere else.
+bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                int size, void*) {
+  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
@@ -186,7 +189,7 @@ tinygltf::Model load(std::span<const std::byte> bytes, const std::string& file, 
   tinygltf::TinyGLTF reader;
   Files files{resolve, Where{file, 0, 0, {}, -1}, {}};
   reader.SetFsCallbacks(callbacks(files));
-  reader.SetImageLoader(ignore_image, nullptr);
+  reader.SetImageLoader(keep_image, nullptr);
   std::string errors, warnings;
   bool whole = false;
   try {

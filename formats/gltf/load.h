@@ -44,6 +44,10 @@ Values values_of(const tinygltf::Model& model, const std::string& file, int acce
 // The materials' names, of all of the file; unnamed ones are material_N.
 std::vector<std::string> material_names(const tinygltf::Model& model);
 
+// The image of base colours of a material; null: there is none. Error: fault(); the image is not there.
+std::shared_ptr<const SourceTexture> texture_of(const tinygltf::Model& model, const std::string& file, size_t material,
+                                                const Resolve& resolve, Report& report);
+
 // The triangles of a mesh; nothing when it has none (points and lines are told).
 std::optional<SourceMesh> mesh_of(const tinygltf::Model& model, const std::string& file, int mesh, double unit_m,
                                   Report& report);
@@ -62,6 +66,7 @@ void animate(const tinygltf::Model& model, const std::string& file, const Source
 
 // Everything else that the file says and that has no place in a scene. Error: it needs an extension that is not read.
 void check_extensions(const tinygltf::Model& model, const std::string& file);
-void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file, Report& report);
+// textures: base colours are not left out.
+void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file, bool textures, Report& report);
 
 }  // namespace suite::gltf

@@ -174,6 +174,7 @@ void Builder::materials() {
     made.name = names[k];
     const std::vector<double>& colour = model_.materials[k].pbrMetallicRoughness.baseColorFactor;
     for (size_t c = 0; c < 3 && c < colour.size(); ++c) made.rgb[c] = std::clamp(colour[c], 0.0, 1.0);
+    if (options_.textures) made.texture = texture_of(model_, file_, k, options_.resolve, report_);
   }
 }
 
@@ -203,7 +204,7 @@ SourceModel Builder::run() {
   if (flat_)
     report_.add("SP706", file_, {Where{file_, 0, 0, {}, -1}, strf("%zu nodes are flattened to nothing", flat_)}, flat_);
   materials();
-  tell_what_is_left_out(model_, file_, report_);
+  tell_what_is_left_out(model_, file_, options_.textures, report_);
   return std::move(result_);
 }
 

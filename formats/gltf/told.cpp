@@ -1,5 +1,6 @@
 // What a file says and a scene has no place for.
 #include <algorithm>
+#include <functional>
 
 #include "formats/gltf/load.h"
 
@@ -31,7 +32,7 @@ constexpr Extension kKnown[] = {
     {"KHR_materials_variants", "the materials that stand at the primitives hold"},
     {"KHR_materials_volume", kNoSpectra},
     {"KHR_texture_basisu", "textures are no spectra"},
-    {"KHR_texture_transform", "textures are no spectra"},
+    {"KHR_texture_transform", "texture coordinates are taken as they are"},
     {"KHR_xmp_json_ld", "metadata"},
     {"EXT_texture_webp", "textures are no spectra"},
     {"MSFT_texture_dds", "textures are no spectra"},
@@ -40,6 +41,20 @@ constexpr Extension kKnown[] = {
 const Extension* known(const std::string& name) {
   const auto* found = std::find_if(std::begin(kKnown), std::end(kKnown), [&](const auto& e) { return name == e.name; });
   return found == std::end(kKnown) ? nullptr : found;
+}
+
+// What is left out of materials whose base colours are taken.
+void tell_of_surfaces(const tinygltf::Model& model,
+                      const std::function<void(const char*, const std::string&, size_t)>& tell) {
+  size_t metals = 0, others = 0;
+  for (const tinygltf::Material& m : model.materials) {
+    const tinygltf::PbrMetallicRoughness& pbr = m.pbrMetallicRoughness;
+    metals += pbr.metallicFactor > 0.5 && pbr.metallicRoughnessTexture.index < 0;
+    others += (pbr.metallicRoughnessTexture.index >= 0) + (m.normalTexture.index >= 0) +
+              (m.occlusionTexture.index >= 0) + (m.emissiveTexture.index >= 0);
+  }
+  tell("SP707", strf("%zu materials of metal: they are matte here ('materials:' names better ones)", metals), metals);
+  tell("SP705", strf("%zu textures of roughness, normals, occlusion or light: base colours are taken", others), others);
 }
 
 }  // namespace
@@ -58,7 +73,7 @@ void check_extensions(const tinygltf::Model& model, const std::string& file) {
                     "write the file again without compression");
 }
 
-void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file, Report& report) {
+void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file, bool textures, Report& report) {
   const auto tell = [&](const char* code, const std::string& what, size_t count) {
     if (count) report.add(code, file, {Where{file, 0, 0, {}, -1}, what}, count);
   };
@@ -72,8 +87,12 @@ void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file
   tell("SP705", strf("%zu lights: lights belong to the simulation", model.lights.size()), model.lights.size());
   tell("SP705", strf("%zu skins: bodies stand as their meshes are stored, not bent by joints", model.skins.size()),
        model.skins.size());
-  tell("SP705", strf("%zu textures: display colours are no spectra, maps are", model.textures.size()),
-       model.textures.size());
+  if (!textures)
+    tell("SP705",
+         strf("%zu textures: display colours are no spectra, maps are ('textures: {uplift: texel}' guesses spectra)",
+              model.textures.size()),
+         model.textures.size());
+  if (textures) tell_of_surfaces(model, tell);
   size_t morphs = 0, colours = 0, see_through = 0, shining = 0, coordinates = 0;
   for (const tinygltf::Mesh& mesh : model.meshes)
     for (const tinygltf::Primitive& p : mesh.primitives) {

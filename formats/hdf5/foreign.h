@@ -2,6 +2,7 @@
 // is held against the size of the file before memory is asked for; the structure of old layouts has no checksums and is
 // followed by the library as it stands, so that a file damaged on purpose may do what the library lets it.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,17 @@ class Foreign {
   // other files, packed by other means than deflate and shuffle, or above 1 GiB.
   Table table(const std::string& name) const;
   std::vector<std::string> children(const std::string& group) const;  // by name; Error when there is no such group
+  // An attribute of a dataset: a text (empty: none, or no text), a number. Error: no such dataset.
+  std::string text(const std::string& name, const std::string& attribute) const;
+  std::optional<double> number(const std::string& name, const std::string& attribute) const;
+  // The texts of a dataset: strings, or a row of characters each; empty when it holds none. Error: no such dataset.
+  std::vector<std::string> names(const std::string& name) const;
+  struct Kind {
+    int dimensions = -1;  // -1: no dataset
+    bool numbers = false, texts = false;
+    unsigned long long rows = 1, columns = 0;  // of one or two dimensions, as Table
+  };
+  Kind kind(const std::string& name) const;
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

@@ -2,6 +2,7 @@
 // its calls are a part of their own (images_part.cpp), loaded at the first image. Internal to formats/raster.
 #pragma once
 #include <functional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -37,8 +38,10 @@ struct ImageToWrite {
 
 // What the part `images` exports as suite_image_calls.
 struct ImageCalls {
-  // room: called with the facts filled in, tells where the values (row-major, channels together) go; may throw.
-  ImageRead (*read)(const std::string& path, ImageFacts& facts, const std::function<float*()>& room);
+  // packed: the file's bytes, whose format the path's extension says; empty: they are in the file. room: called with
+  // the facts filled in, tells where the values (row-major, channels together) go; may throw.
+  ImageRead (*read)(const std::string& path, std::span<const std::byte> packed, ImageFacts& facts,
+                    const std::function<float*()>& room);
   // row: the values of a row, valid until the next call. bytes: the file. Returns what went wrong; empty = nothing.
   std::string (*write)(const ImageToWrite& image, const std::function<const float*(int)>& row,
                        std::vector<unsigned char>& bytes);

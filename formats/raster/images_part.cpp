@@ -34,10 +34,14 @@ double scale_of(const OIIO::TypeDesc& stored) {
 
 std::string told(const std::string& problem) { return problem.empty() ? "unknown reason" : problem; }
 
-ImageRead read(const std::string& path, ImageFacts& facts, const std::function<float*()>& room) {
+ImageRead read(const std::string& path, std::span<const std::byte> packed, ImageFacts& facts,
+               const std::function<float*()>& room) {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // values as stored, not multiplied by alpha
-  const auto input = OIIO::ImageInput::open(path, &config);
+  OIIO::Filesystem::IOMemReader memory(packed.data(), packed.size());
+  OIIO::Filesystem::IOProxy* const from = packed.empty() ? nullptr : &memory;
+  if (from) config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &from);
+  const auto input = OIIO::ImageInput::open(path, &config, from);
   if (!input) return {false, OIIO::geterror()};
   const OIIO::ImageSpec& spec = input->spec();
   facts = {spec.width,

@@ -1,6 +1,8 @@
 // Rasters: values through OpenImageIO, georeferencing through libgeotiff. See FORMAT.md.
 #pragma once
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,10 @@ struct Raster {
 
 // Error: unreadable, more than max_pixels, or more bytes declared than a file of its size can hold.
 Raster read_raster(const std::string& path, size_t max_pixels = size_t{1} << 28);
+
+// A PNG or JPEG that lies in memory, in display values of 0 to 1 whatever its bits; `name` is for messages, `numbers`
+// and the rest stay empty. Error: neither, damaged, more than max_pixels.
+Raster read_picture(std::span<const std::byte> bytes, const std::string& name, size_t max_pixels);
 
 // Whether a stored number is the mark of a missing value; both as the 32-bit floats that rasters are read as.
 bool is_no_data(const Raster& raster, float stored);

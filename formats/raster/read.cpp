@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "base/files.h"
@@ -42,7 +43,7 @@ Raster read_raster(const std::string& path, size_t max_pixels) {
   if (std::optional<Raster> map = read_portable_map(path, max_pixels)) return std::move(*map);
   Raster raster;
   ImageFacts image;
-  const ImageRead read = image_calls().read(path, image, [&] {
+  const ImageRead read = image_calls().read(path, {}, image, [&] {
     check(image, where, max_pixels, bytes);
     raster.width = static_cast<uint32_t>(image.width);
     raster.height = static_cast<uint32_t>(image.height);
@@ -60,6 +61,30 @@ Raster read_raster(const std::string& path, size_t max_pixels) {
   if (image.integer)
     for (float& v : raster.values) v = static_cast<float>(std::round(v * image.scale));
   read_tiff_numbers(path, raster);
+  return raster;
+}
+
+Raster read_picture(std::span<const std::byte> bytes, const std::string& name, size_t max_pixels) {
+  const Where where{name, 0, 0, {}, -1};
+  const auto begins = [&](std::string_view with) {
+    return bytes.size() > with.size() && std::memcmp(bytes.data(), with.data(), with.size()) == 0;
+  };
+  const bool png = begins("\x89PNG\r\n\x1a\n"), jpeg = begins("\xff\xd8\xff");
+  if (!png && !jpeg) throw Error(where, "is no PNG and no JPEG", "convert the image to one of them");
+  Raster raster;
+  ImageFacts image;
+  const ImageRead read = image_calls().read(png ? "picture.png" : "picture.jpg", bytes, image, [&] {
+    check(image, where, max_pixels, bytes.size());
+    raster.width = static_cast<uint32_t>(image.width);
+    raster.height = static_cast<uint32_t>(image.height);
+    raster.channels = static_cast<uint32_t>(image.channels);
+    raster.values.resize(size_t{raster.width} * raster.height * raster.channels);
+    return raster.values.data();
+  });
+  if (!read.opened || !read.problem.empty())
+    throw Error(where, std::string("cannot be read as ") + (png ? "PNG: " : "JPEG: ") + read.problem,
+                "the image is damaged");
+  for (float& v : raster.values) v = v > 0 ? std::min(v, 1.0f) : 0.0f;
   return raster;
 }
 

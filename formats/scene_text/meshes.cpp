@@ -110,19 +110,22 @@ void Reader::read_model(const Params& p, const std::string& kind, DraftGeometry 
   options.unit_m = unit_of(p);
   options.y_up = y_up(p, true);
   if (kind == "gltf") options.animation = p.text("animation", "");
+  const auto textures = kind == "gltf" ? p.find("textures") : std::nullopt;
+  options.textures = textures.has_value();
   const Params file = p.at(kind);
   const std::filesystem::path folder = std::filesystem::path(file.as_text()).parent_path();
   options.resolve = [&](const std::string& name) {
     try {
       return inputs_.add((folder / name).string()).path;
     } catch (const Error& e) {
-      throw Error(file.where(), "buffer '" + printable(name) + "' " + e.message(), e.hint(), "SP003");
+      throw Error(file.where(), "its file '" + printable(name) + "': " + e.message(), e.hint(), "SP003");
     }
   };
   SourceModel model = of_file([&] {
     if (kind == "gltf") return read_gltf(input(file), options, report_);
     return read_assimp(input(file), options, p.has("up") ? &options.y_up : nullptr, report_);
   });
+  if (textures) of_file([&] { read_textures(*textures, model, g); });
   draft_.geometry.erase(draft_.geometry.begin() + static_cast<std::ptrdiff_t>(slot));
   for (SourceModel::Part& part : model.meshes) {
     DraftGeometry& made = draft_.geometry.emplace_back(g);

@@ -15,6 +15,8 @@
 
 namespace suite {
 struct Raster;
+struct SourceMaterial;
+struct SourceModel;
 struct WaterSpec;
 }  // namespace suite
 
@@ -33,6 +35,12 @@ auto of_file(const Read& read) {
     throw Error(e.where(), e.message(), e.hint(), "SP003");
   }
 }
+
+// How display colours of a model become spectra; texels: of its images so far.
+struct UpliftRule {
+  bool by_texel = true;
+  size_t classes = 64, texels = 0;
+};
 
 // A raster, and what an ENVI image says of its bands.
 struct MapRaster : Raster {
@@ -89,6 +97,10 @@ class Reader {
   void read_model(const Params& p, const std::string& kind, DraftGeometry g, size_t slot);
   void read_city_mesh(const Params& p, DraftGeometry& g);
   void forget_temperatures(const Params& p, SourceMesh& mesh);
+  // textures.cpp
+  std::array<double, 3> read_texture(const Params& p, const SourceMaterial& from, const std::string& id,
+                                     UpliftRule& rule);
+  void read_textures(const Params& p, const SourceModel& model, DraftGeometry& g);
   // points.cpp
   void read_points(const Params& p, DraftGeometry& g);
   VoxelData read_point_voxels(const Params& p, const Params& file);

@@ -41,6 +41,8 @@ constexpr std::array kKinds = std::to_array<DiagnosticKind>({
      "add sources, or ignore it for a thermal simulation"},
     {Dr::clipped, kWarning, "more than 1 % of a sensor's pixels are clipped by converter or full well",
      "change the integration time, gain_e_per_dn, bias_dn, bits or full_well_e"},
+    {Dr::guessed_bands, kWarning, "a band lies beyond the range in which display colours are uplifted to reflectances",
+     "give these materials measured spectra where that matters"},
     // Transport.
     {Dr::unresolved_refracted, kWarning, "light of small sources behind smooth refracting surfaces was not found",
      "give the sun a wider disk, lamps a surface, surfaces a roughness, or more paths"},

@@ -26,6 +26,7 @@ enum class Dr : int {
   band_zero = 111,
   no_sources = 112,
   clipped = 113,
+  guessed_bands = 114,
   unresolved_refracted = 201,
   truncated_paths = 202,
   rejected_samples = 203,

@@ -71,24 +71,52 @@ std::vector<PlacedFinding> Report::placed() const {
   return out;
 }
 
-std::string Report::text() const {
+namespace {
+
+std::string examples_text(const std::vector<Finding>& examples) {
   std::string out;
-  for (const auto& [key, entry] : entries_) {
-    if (muted_.count(key.first)) continue;
-    const IssueKind& k = kind(key.first);
-    out += strf("%s: %s [%s] x%zu: %s\n", printable(key.second).c_str(), to_text(k.severity), k.code.c_str(),
-                entry.count, k.summary.c_str());
-    for (const Finding& f : entry.examples) {
-      const std::string place = printable(to_text(f.where));
-      out += "    " + (place.empty() ? "" : place + ": ") + printable(f.message) + excerpt(f.where) + "\n";
+  for (const Finding& f : examples) {
+    const std::string place = printable(to_text(f.where));
+    out += "    " + (place.empty() ? "" : place + ": ") + printable(f.message) + excerpt(f.where) + "\n";
+  }
+  return out;
+}
+
+std::string hint_text(const IssueKind& kind) { return kind.hint.empty() ? "" : "    hint: " + kind.hint + "\n"; }
+
+}  // namespace
+
+// A kind that many assets share is told once, with the asset that has most of it; errors have to be mended one by one.
+std::string Report::text() const {
+  constexpr size_t kFolded = 4;  // assets
+  std::string out;
+  for (auto at = entries_.begin(); at != entries_.end();) {
+    const IssueKind& k = kind(at->first.first);
+    auto end = at, worst = at;
+    size_t assets = 0, faults = 0;
+    for (; end != entries_.end() && end->first.first == k.code; ++end, ++assets) {
+      faults += end->second.count;
+      if (end->second.count > worst->second.count) worst = end;
     }
-    if (!k.hint.empty()) out += "    hint: " + k.hint + "\n";
+    const bool folded = assets >= kFolded && k.severity != Severity::error;
+    if (muted_.count(k.code)) at = end;
+    for (; !folded && at != end; ++at)
+      out += strf("%s: %s [%s] x%zu: %s\n", printable(at->first.second).c_str(), to_text(k.severity), k.code.c_str(),
+                  at->second.count, k.summary.c_str()) +
+             examples_text(at->second.examples) + hint_text(k);
+    if (folded && at != end)
+      out +=
+          strf("%zu files or objects: %s [%s] x%zu: %s\n    most, x%zu, in %s:\n", assets, to_text(k.severity),
+               k.code.c_str(), faults, k.summary.c_str(), worst->second.count, printable(worst->first.second).c_str()) +
+          examples_text(worst->second.examples) + hint_text(k);
+    at = end;
   }
   // Many faults of few kinds are one thing to mend, however many they are.
   const auto many = [&](Severity severity, const char* what) {
-    size_t kinds = 0;
-    for (const auto& [key, entry] : entries_) kinds += !muted_.count(key.first) && kind(key.first).severity == severity;
-    const size_t faults = count(severity);
+    std::set<std::string> codes;
+    for (const auto& [key, entry] : entries_)
+      if (!muted_.count(key.first) && kind(key.first).severity == severity) codes.insert(key.first);
+    const size_t faults = count(severity), kinds = codes.size();
     return strf("%zu %s", faults, what) +
            (faults > kinds ? strf(" of %zu %s", kinds, kinds == 1 ? "kind" : "kinds") : "");
   };

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "heat/closed_backs.h"
 #include "heat/heat_walk.h"
 #include "spectral/planck.h"
 
@@ -16,30 +17,6 @@ namespace {
 constexpr double kFilm = 12;  // W/(m2 K), of a light wind with radiation
 
 std::string share_text(double share) { return strf("%.0f %%", 100 * share); }
-
-// Infrared that ends on closed backs: of what ends on a material, the share from behind.
-std::string back_note(const HeatScene& scene, const ExchangePaths& exchange) {
-  constexpr double kLittle = 1e-3;  // as the rounding of places on closed bodies may let through
-  const auto& [tracer, elements, faces, optics] = scene;
-  std::vector<std::array<double, 2>> ended(optics.has_heat.size(), {0, 0});  // m2 of emission, in front and behind
-  const size_t each = size_t{exchange.blocks} * exchange.paths;
-  for (size_t k = 0; k < exchange.ends.size(); ++k) {
-    const uint32_t end = exchange.ends[k], face = faces.face_of(end);
-    if (face != kNone)
-      ended[elements[faces.element(face)].material][end == face ? 0 : 1] +=
-          exchange.area[k / each] * double{exchange.weights[k]};
-  }
-  std::string seen;
-  for (size_t m = 0; m < ended.size(); ++m)
-    if (const double behind = ended[m][1]; behind > kLittle * (behind + ended[m][0]))
-      seen += strf("%s'%s' (%.2g %%)", seen.empty() ? "" : ", ", optics.materials->materials[m].id.c_str(),
-                   100 * behind / (behind + ended[m][0]));
-  if (seen.empty()) return {};
-  return "closed backs are seen, of materials (with the share of the infrared ending on each that comes from behind) " +
-         seen +
-         ": they are as warm as their fronts, and nothing that falls there, sunlight neither, warms them; "
-         "'back: open' lets both sides take part";
-}
 
 // Whether a place that may come and go is there all the time: at 17 times, looked at from just off it.
 bool stays(const Tracer& tracer, const Hit& place) {

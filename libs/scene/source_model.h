@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,10 +13,19 @@
 
 namespace suite {
 
+// An image of display colours that a model lays onto its surfaces by their texture coordinates.
+struct SourceTexture {
+  std::string name;              // for messages
+  std::vector<std::byte> bytes;  // of a picture's file
+  enum class Extend { repeat, clamp } extend = Extend::repeat;
+  bool smooth = true;  // linear between texels
+};
+
 // What a file says of a material's colour: a display colour, which is no spectrum.
 struct SourceMaterial {
   std::string name;
-  std::array<double, 3> rgb{1, 1, 1};  // of sRGB's primaries, linear, 0 to 1
+  std::array<double, 3> rgb{1, 1, 1};            // of sRGB's primaries, linear, 0 to 1
+  std::shared_ptr<const SourceTexture> texture;  // times rgb; null: none, or not asked for
 };
 
 struct SourceModel {
@@ -34,6 +44,7 @@ struct SourceModelOptions {
   Where where;                 // where it is named: the place of all its placements
   double unit_m = 1;           // metres of one unit of the file
   bool y_up = false;           // y is up and z towards the viewer in the file; else z is up
+  bool textures = false;       // what the materials' colours are, with their images; else these are never opened
   std::string animation = {};  // name or number (from 0) of the one that is taken; "none"; empty: the first
   // Where a file that the model names is to be found. Error: it is not there.
   std::function<std::string(const std::string&)> resolve = {};

@@ -7,6 +7,7 @@
 #include "motion/time.h"
 #include "optics/models.h"
 #include "scene/primitives.h"
+#include "spectral/display_colour.h"
 #include "surface/material_lookup.h"
 
 namespace suite {
@@ -134,6 +135,32 @@ std::optional<SensorDiagnostic> unknown_bands(const Scene& scene, const Sensor& 
   return std::nullopt;
 }
 
+// Bands where a display colour says nothing of the materials that have their spectra from one.
+std::optional<SensorDiagnostic> guessed_bands(const Scene& scene, const Sensor& sensor) {
+  size_t guessed = 0;
+  std::string first;
+  for (const Material& m : scene.materials)
+    if (m.description.starts_with(kUplifted) && guessed++ == 0) first = m.id;
+  if (!guessed) return std::nullopt;
+  const double low = uplifted_wavelengths_um().front(), high = uplifted_wavelengths_um().back();
+  std::vector<std::string> names;
+  for (size_t s = 0; s < sensor.states().size(); ++s)
+    for (const Band& b : sensor.bands(s)) {
+      const std::string name = strf("'%s' (%.3g um)", b.name.c_str(), b.center_um);
+      if ((b.low_um() < low - 1e-9 || b.high_um() > high + 1e-9) &&
+          std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+    }
+  if (names.empty()) return std::nullopt;
+  return SensorDiagnostic{
+      Dr::guessed_bands, sensor.name(),
+      "band " + named(names) +
+          strf(" reaches beyond %g to %g um, where %zu materials have reflectances uplifted from display "
+               "colours (the first is '%s'): the value at that end is held there, which is a guess",
+               low, high, guessed, first.c_str()),
+      "give these materials measured spectra where that matters", false};
+}
+
 std::optional<SensorDiagnostic> too_long(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
   const std::optional<LongExposure> e = long_exposure(written, scene, sensor);
   if (!e) return std::nullopt;
@@ -158,6 +185,7 @@ std::vector<SensorDiagnostic> diagnose_lights(const SourceSpecs& written, const 
     if (!found) found = dark_bands(first, scene, *sensor);
     if (!found) found = unknown_bands(scene, *sensor);
     if (found) all.push_back(*found);
+    if (auto guessed = guessed_bands(scene, *sensor)) all.push_back(*guessed);
     if (auto slow = too_long(written, scene, *sensor)) all.push_back(*slow);
   }
   return all;

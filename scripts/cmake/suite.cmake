@@ -184,14 +184,17 @@ endfunction()
 # CMakeLists as one ctest entry. In the folders of SUITE_ONE_PROGRAM a library's tests are one program, <label>_<library>, of
 # which the entry runs one source (test_main's --source); elsewhere a source is a program, of the entry's name.
 set(SUITE_ONE_PROGRAM unit)
+function(_suite_program_of place name label program)
+  get_filename_component(library ${place} DIRECTORY)
+  set(${program} ${name} PARENT_SCOPE)
+  if(label IN_LIST SUITE_ONE_PROGRAM)
+    set(${program} ${label}_${library} PARENT_SCOPE)
+  endif()
+endfunction()
 function(suite_test place)
   cmake_parse_arguments(A "" "" "USES;VENDOR;ENVIRONMENT" ${ARGN})
   _suite_test_name(${place} name label)
-  get_filename_component(library ${place} DIRECTORY)
-  set(program ${name})
-  if(label IN_LIST SUITE_ONE_PROGRAM)
-    set(program ${label}_${library})
-  endif()
+  _suite_program_of(${place} ${name} ${label} program)
   _suite_test_program(${program} ${place}_test.cpp "${A_USES};${A_VENDOR}")
   suite_entry(${name} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
   if("${name}" IN_LIST SUITE_QUICK)
@@ -203,12 +206,14 @@ endfunction()
 function(suite_test_long place)
   cmake_parse_arguments(A "" "SECONDS" "ENVIRONMENT" ${ARGN})
   _suite_test_name(${place} name label)
-  suite_entry(${name}_long LABEL long TIMEOUT ${A_SECONDS} COMMAND $<TARGET_FILE:${name}> ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
+  _suite_program_of(${place} ${name} ${label} program)
+  suite_entry(${name}_long LABEL long TIMEOUT ${A_SECONDS} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp
+              ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
 endfunction()
 
-# suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: some 20 000 (seconds) in the default
-# run, and a campaign of 30 s per input under the label `long`.
+# suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: 1000 an input in the default run,
+# 20 000 under the label `long`; tests/fuzz/run says how many it wants.
 function(suite_fuzz place)
   suite_test(${place} ${ARGN})
-  suite_test_long(${place} SECONDS 1500 ENVIRONMENT SUITE_FUZZ_SECONDS=30)
+  suite_test_long(${place} SECONDS 1500 ENVIRONMENT SUITE_FUZZ_COUNT=20000)
 endfunction()

@@ -115,18 +115,25 @@ class Mutator {
   std::vector<std::string> words_;
 };
 
-// Runs `read` on mutations of `input` until `count` are done or `seconds` have passed, but on 1000 at least
-// (SUITE_FUZZ_SECONDS overrides the time and lifts the count). At least one mutation must be refused, and the input
-// itself must be accepted.
+// How many mutations of an input are tried: SUITE_FUZZ_COUNT of the environment, else kMutations or fewer where each
+// takes long. Always as many and the same ones, however fast the machine is.
+inline constexpr size_t kMutations = 1000;
+inline size_t mutations(size_t most) {
+  const char* asked = std::getenv("SUITE_FUZZ_COUNT");
+  return asked ? std::strtoull(asked, nullptr, 10) : std::min(most, kMutations);
+}
+
+// Runs `read` on mutations of `input`, `most` or as many as mutations() says. At least one must be refused, and the
+// input itself must be accepted.
 inline void fuzz(const Bytes& input, const std::function<void(std::span<const std::byte>)>& read, uint64_t seed = 1,
-                 size_t count = 20000, double seconds = 1.5, const std::vector<std::string>& words = {}) {
+                 size_t most = kMutations, const std::vector<std::string>& words = {}) {
   ASSERT_NO_THROW(read(input));
-  if (const char* longer = std::getenv("SUITE_FUZZ_SECONDS")) seconds = std::atof(longer), count = SIZE_MAX;
   const auto start = std::chrono::steady_clock::now();
   auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const size_t count = mutations(most);
   Mutator mutate(seed, words);
   size_t done = 0, refused = 0;
-  for (; done < count && (elapsed() < seconds || done < 1000); ++done) {
+  for (; done < count; ++done) {
     const Bytes b = mutate(input);
     const double before = cpu_seconds();
     try {

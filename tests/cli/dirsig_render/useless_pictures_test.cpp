@@ -159,6 +159,20 @@ TEST_F(UselessPictures, BandsOutside) {
              true);
 }
 
+// A display colour says nothing beyond the visible.
+TEST_F(UselessPictures, BandsBeyondUpliftedColours) {
+  std::string scene = kBoards;
+  scene.replace(scene.find("reflectance: 0.2"), 16,
+                "reflectance: {points: [[0.38, 0.2], [0.78, 0.3]], outside: hold}, "
+                "description: uplifted from a display colour 0.2 0.2 0.3");
+  prepare(scene.c_str(), "guess");
+  const auto told = [&](double um) { return said(kDay + camera("[4, -1, 50]", "[4, 0, 1]", um), "guess"); };
+  EXPECT_THAT(told(0.8), HasSubstr("band 'pan' (0.8 um) reaches beyond 0.38 to 0.78 um, where 1 materials have "
+                                   "reflectances uplifted from display colours (the first is 'ground')"));
+  EXPECT_THAT(told(0.8), HasSubstr("[DR114]"));
+  EXPECT_THAT(told(0.6), testing::Not(HasSubstr("uplifted")));
+}
+
 TEST_F(UselessPictures, AllZero) {
   // It sees black boards only.
   expect_one(kDay + kSky + camera("[100, -1, 30]", "[100, 0, 1]"),

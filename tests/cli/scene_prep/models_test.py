@@ -4,12 +4,14 @@ models_test.py BIN DATA WORK. Needs numpy and assimp's program (scripts/packages
 made 1000 times larger, so that the six decimals of --export-obj stand for nanometres; the bound of 5e-7 m is that of
 the file's own metres.
 """
+import json
 import os
 import re
 import struct
 import subprocess
 import sys
 import unittest
+import zlib
 
 try:
     import numpy as np
@@ -96,6 +98,37 @@ def ply(kind, path, faces=((0, 1, 4), (0, 1, 2, 3))):
             order = "<" if kind == "binary_little_endian" else ">"
             f.write(b"".join(struct.pack(order + "3d", *p) for p in places))
             f.write(b"".join(struct.pack(order + f"B{len(c)}i", len(c), *c) for c in faces))
+    return path
+
+
+def textured_box():
+    """DATA's Box.glb with texture coordinates (its positions' x and y) and an image of one red texel."""
+    with open(DATA + "/gltf/Box.glb", "rb") as f:
+        data = f.read()
+    length = struct.unpack("<I", data[12:16])[0]
+    root = json.loads(data[20:20 + length])
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    png = (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0))
+           + chunk(b"IDAT", zlib.compress(b"\0\xff\0\0")) + chunk(b"IEND", b""))
+    binary = data[28 + length:]
+    binary += b"\0" * (-len(binary) % 4)
+    count = root["accessors"][root["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]["count"]
+    root["bufferViews"] += [{"buffer": 0, "byteOffset": len(binary), "byteLength": 8 * count},
+                            {"buffer": 0, "byteOffset": len(binary) + 8 * count, "byteLength": len(png)}]
+    root["accessors"].append({"bufferView": len(root["bufferViews"]) - 2, "componentType": 5126, "count": count, "type": "VEC2"})
+    root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = len(root["accessors"]) - 1
+    root["images"] = [{"bufferView": len(root["bufferViews"]) - 1, "mimeType": "image/png"}]
+    root["textures"] = [{"source": 0}]
+    root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+    binary += struct.pack("<2f", 0.25, 0.75) * count + png
+    binary += b"\0" * (-len(binary) % 4)
+    root["buffers"][0]["byteLength"] = len(binary)
+    text = json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    path = WORK + "/textured.glb"
+    with open(path, "wb") as f:
+        f.write(b"glTF" + struct.pack("<II", 2, 28 + len(text) + len(binary)) + struct.pack("<I", len(text)) + b"JSON" + text
+                + struct.pack("<I", len(binary)) + b"BIN\0" + binary)
     return path
 
 
@@ -327,6 +360,35 @@ class Models(unittest.TestCase):
         code, said = prepare(box, "--uplift")
         self.assertEqual(code, 0, said)
         self.assertIn("a spectrum is guessed from the display colour (0.800, 0.000, 0.000)", said)
+
+    def test_textures(self):
+        """A GLB with an image: its material is made of the texture, and the text says so."""
+        made = subprocess.run([BIN + "/scene-prep", textured_box(), "--uplift", "--convert", WORK + "/uplifted"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        with open(WORK + "/uplifted/textured.yaml", encoding="utf-8") as f:
+            self.assertIn("textures: {uplift: texel}", f.read())
+        code, said = prepare(textured_box(), "--uplift")
+        self.assertEqual(code, 0, said)
+        self.assertIn("its texture is uplifted to spectra", said)
+        self.assertIn("1 materials are matte with reflectances uplifted from display colours, 1 of them from textures", said)
+
+    def test_warnings_of_200_objects(self):
+        """Each object has a triangle without area, one has three: told once, with the worst."""
+        objects = ""
+        for k in range(200):
+            with open(f"{WORK}/part_{k}.obj", "w", encoding="utf-8") as f:
+                f.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\n" + "f 1 2 4\n" * (3 if k == 123 else 1))
+            objects += f"  part_{k}: {{obj: part_{k}.obj, material: paint}}\n"
+        with open(WORK + "/parts.yaml", "w", encoding="utf-8") as f:
+            f.write("scene: 1\nmaterials: {paint: {model: lambert, reflectance: 0.5}}\nobjects:\n" + objects + "world:\n"
+                    + "".join(f"  - {{place: part_{k}, translate: [{3 * k}, 0, 0]}}\n" for k in range(200)))
+        code, said = prepare(WORK + "/parts.yaml")
+        self.assertEqual(code, 0, said)
+        self.assertIn("200 files or objects: warning [SP302] x202: a triangle has no area", said)
+        self.assertRegex(said, r"most, x3, in \S*part_123\.obj:")
+        self.assertIn("hint: --repair drops it", said)
+        self.assertLess(said.count("\n"), 40, said)
 
     def test_in_a_scene(self):
         with open(WORK + "/scene.yaml", "w", encoding="utf-8") as f:

@@ -76,8 +76,8 @@ TEST(Fuzz, Params) {
     visit(p, 0);
     ++accepted;
   };
-  test::fuzz(test::bytes_of(valid), read, 1, 20000, 6, words);
-  EXPECT_GT(accepted, 100u);  // the loop gets past the first check
+  test::fuzz(test::bytes_of(valid), read, 1, test::kMutations, words);
+  EXPECT_GT(100 * accepted, test::mutations(test::kMutations));  // the loop gets past the first check
 }
 
 // What programs write into other files as JSON.
@@ -89,21 +89,21 @@ TEST(Fuzz, ParamsJson) {
     ++accepted;
   };
   test::fuzz(test::bytes_of("{\"a\": [1, -2.5e3, {\"b\": \"t\\u00e9xt\", \"c\": null}], \"d\": true, \"e\": \"\"}"),
-             read, 2, 20000, 4,
+             read, 2, test::kMutations,
              {"{", "}", "[", "]", ",", ":", "\"", "\\u12", "1e999", "-", "[[[[[[[[", "\xff", "null"});
-  EXPECT_GT(accepted, 100u);
+  EXPECT_GT(100 * accepted, test::mutations(test::kMutations));
 }
 
 // Whatever bytes a message holds, what is shown is UTF-8 without control characters.
 TEST(Fuzz, PrintableText) {
   test::Mutator mutate(3, {"\x1b[31m", "\xe2\x80\xae", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xc0\xaf", "\r", "\n"});
   const test::Bytes seed = test::bytes_of("material 'h\xc3\xa4user' \xe2\x82\xac \xf0\x9f\x8c\x8d is unknown");
-  for (int n = 0; n < 20000; ++n) {
+  for (size_t n = 0; n < test::mutations(test::kMutations); ++n) {
     const test::Bytes b = mutate(seed);
     const std::string shown = printable({reinterpret_cast<const char*>(b.data()), b.size()});
     ASSERT_EQ(utf8_bytes(shown), shown.size()) << n;
     for (const char c : shown) ASSERT_FALSE((c >= 0 && c < 0x20) || c == 0x7f) << n;
-    const Error e({"f", 1, n % 60 + 1, std::string(shown.begin(), shown.end()), -1}, shown);
+    const Error e({"f", 1, static_cast<int>(n % 60) + 1, std::string(shown.begin(), shown.end()), -1}, shown);
     ASSERT_EQ(utf8_bytes(e.what()), std::strlen(e.what())) << n;
   }
 }

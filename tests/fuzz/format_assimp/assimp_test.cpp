@@ -7,15 +7,17 @@
 namespace suite {
 namespace {
 
-void read_and_check(std::span<const std::byte> bytes) {
+void check(std::span<const std::byte> bytes, const char* file) {
   Report report(scene_issues());
   SourceModelOptions options;
   options.name = "m";
-  const SourceModel model = parse_assimp(bytes, "fuzz.dae", options, nullptr, report);
+  const SourceModel model = parse_assimp(bytes, file, options, nullptr, report);
   for (const SourceModel::Part& part : model.meshes)
     for (const uint32_t v : part.mesh.indices)
       if (v >= part.mesh.positions.size()) throw std::runtime_error("an index that is not there came out");
 }
+
+void read_and_check(std::span<const std::byte> bytes) { check(bytes, "fuzz.dae"); }
 
 const std::string kTriangle = R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="0.5" name="half"/><up_axis>Z_UP</up_axis></asset>
@@ -28,7 +30,19 @@ const std::vector<std::string> kWords{"99999999999",          "-1", " nan ",    
                                       "count=\"4000000000\"", "#g", "<polylist/>"};
 
 // Each is read in a process of its own: fewer than elsewhere.
-TEST(FuzzAssimp, Collada) { test::fuzz(test::bytes_of(kTriangle), read_and_check, 1, 2000, 4, kWords); }
+TEST(FuzzAssimp, Collada) { test::fuzz(test::bytes_of(kTriangle), read_and_check, 1, test::kMutations, kWords); }
+
+// Long numbers too, which the library would read by recursion or beyond a line.
+TEST(FuzzAssimp, Fbx) {
+  const std::string digits(400, '7');
+  test::fuzz(
+      read_bytes(SUITE_SOURCE_DIR "/tests/data/models/box.fbx"), [](auto bytes) { check(bytes, "fuzz.fbx"); }, 2, 200,
+      {"99999999999", "-1", "nan", "{", "}", "*4000000000", "a: ", ",", "\"", digits, "0." + digits, "1e" + digits});
+}
+TEST(FuzzAssimp, ThreeDs) {
+  test::fuzz(
+      read_bytes(SUITE_SOURCE_DIR "/tests/data/models/box.3ds"), [](auto bytes) { check(bytes, "fuzz.3ds"); }, 3, 300);
+}
 
 TEST(FuzzAssimp, WhatTheFileSaysIsDone) {
   Report report(scene_issues());

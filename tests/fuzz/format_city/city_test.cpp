@@ -36,8 +36,8 @@ const std::vector<std::string> kXml{"<gml:Polygon>",   "</gml:Polygon>",     " n
                                     " 1e999 ",         "srsDimension=\"2\"", "xlink:href=\"#p1\"",
                                     "<gml:interior/>", "lod4Solid",          "&#0;"};
 
-TEST(FuzzCity, Json) { test::fuzz(test::bytes_of(test::small_city()), read_and_check, 1, 20000, 4, kJson); }
-TEST(FuzzCity, Gml) { test::fuzz(test::bytes_of(test::small_gml()), read_and_check, 2, 20000, 4, kXml); }
+TEST(FuzzCity, Json) { test::fuzz(test::bytes_of(test::small_city()), read_and_check, 1, test::kMutations, kJson); }
+TEST(FuzzCity, Gml) { test::fuzz(test::bytes_of(test::small_gml()), read_and_check, 2, test::kMutations, kXml); }
 
 }  // namespace
 }  // namespace suite

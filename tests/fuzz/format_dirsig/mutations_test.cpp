@@ -75,7 +75,7 @@ TEST_P(DirsigMutations, GiveATextOrOneLocatedMessage) {
     TrackedInputs inputs(start, {});
     read_scene_tree(root, inputs, report);
   };
-  fuzz(bytes_of(read_text(folder / name)), read, 20, 200, 20, kWords);
+  fuzz(bytes_of(read_text(folder / name)), read, 20, 200, kWords);
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, DirsigMutations,

@@ -43,8 +43,8 @@ TEST(Fuzz, EnviHeader) {
     EXPECT_TRUE(h.wavelength_um.empty() || h.wavelength_um.size() == h.bands);
     EXPECT_TRUE(h.band_names.empty() || h.band_names.size() == h.bands);
   };
-  test::fuzz(test::bytes_of(valid), read, 1, 20000, 4, words);
-  EXPECT_GT(accepted, 100u);  // the loop gets past the first check
+  test::fuzz(test::bytes_of(valid), read, 1, test::kMutations, words);
+  EXPECT_GT(100 * accepted, test::mutations(test::kMutations));  // the loop gets past the first check
 }
 
 // An image and its header together: values or one Error.
@@ -61,7 +61,8 @@ TEST(Fuzz, EnviImage) {
                const EnviImage image(folder / "a.img");
                EXPECT_EQ(image.read_all().size(), image.header().values());
              },
-             2, 20000, 4, {"=", "{", "}", "-1", "999999999", "bsq", "bip", "data type = 5", "header offset = 8"});
+             2, test::kMutations,
+             {"=", "{", "}", "-1", "999999999", "bsq", "bip", "data type = 5", "header offset = 8"});
 }
 
 }  // namespace suite

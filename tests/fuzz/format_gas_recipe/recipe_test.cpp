@@ -15,7 +15,7 @@ TEST(FuzzGasRecipe, Recipe) {
              [&](std::span<const std::byte> b) {
                parse_gas_recipe({reinterpret_cast<const char*>(b.data()), b.size()}, folder / "r.yaml");
              },
-             41, 20000, 2,
+             41, test::kMutations,
              {"nan", "1e999", "-1", "0", "[", "]", "{", "}", ": ", ", ", "\n", "none", "range_cm", "99999"});
 }
 

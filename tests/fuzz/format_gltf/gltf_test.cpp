@@ -9,7 +9,7 @@ namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
   Report report(scene_issues());
-  SourceModelOptions how{.name = "m", .where = {"scene.yaml", 1, 1, {}, -1}, .y_up = true};
+  SourceModelOptions how{.name = "m", .where = {"scene.yaml", 1, 1, {}, -1}, .y_up = true, .textures = true};
   how.resolve = [](const std::string& name) -> std::string { throw Error(Where{name, 0, 0, {}, -1}, "is not there"); };
   const SourceModel model = parse_gltf(bytes, "fuzz.gltf", how, report);
   for (const SourceModel::Part& part : model.meshes) {
@@ -44,7 +44,8 @@ std::string model(bool binary) {
       {"mesh":1,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,5,6,7,1],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":5,"ROTATION":6}}}}],
       "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":2,"TEXCOORD_0":3},"indices":1,"material":0}]},
       {"primitives":[{"attributes":{"POSITION":7},"mode":5},{"attributes":{"POSITION":0},"mode":6}]}],
-      "materials":[{"name":"red","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}}],
+      "materials":[{"name":"red","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],"baseColorTexture":{"index":0}}}],
+      "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071,"magFilter":9728}],"images":[{"bufferView":0,"mimeType":"image/png"}],
       "animations":[{"samplers":[{"input":4,"output":5},{"input":4,"output":6,"interpolation":"STEP"}],
       "channels":[{"sampler":0,"target":{"node":1,"path":"translation"}},{"sampler":1,"target":{"node":1,"path":"rotation"}}]}],
       "extensionsUsed":["EXT_mesh_gpu_instancing"])";
@@ -55,8 +56,8 @@ const std::vector<std::string> kWords{
     "null", "-1", "1e308", "4294967295",      "5120",     "5126",      "[]",  "{}",   "\"\"",
     "true", "0",  "7",     "\"CUBICSPLINE\"", "\"VEC4\"", "\"scale\"", "2.5", "[[[[", "}}}}"};
 
-TEST(FuzzGltf, Text) { test::fuzz(test::bytes_of(model(false)), read_and_check, 1, 20000, 4, kWords); }
-TEST(FuzzGltf, Container) { test::fuzz(test::bytes_of(model(true)), read_and_check, 2, 20000, 4, kWords); }
+TEST(FuzzGltf, Text) { test::fuzz(test::bytes_of(model(false)), read_and_check, 1, test::kMutations, kWords); }
+TEST(FuzzGltf, Container) { test::fuzz(test::bytes_of(model(true)), read_and_check, 2, test::kMutations, kWords); }
 
 }  // namespace
 }  // namespace suite

@@ -36,7 +36,9 @@ const std::vector<std::string> kWords{
     "<part>",   "</part>", "<filter type=\"scale\">", "1e999", "nan", ";;", "&#10;", "\" ", "objloader", "<scene/>",
     "onGround", "-1"};
 
-TEST(FuzzHelios, Scene) { test::fuzz(test::bytes_of(test::helios_scene()), read_and_check, 1, 20000, 4, kWords); }
+TEST(FuzzHelios, Scene) {
+  test::fuzz(test::bytes_of(test::helios_scene()), read_and_check, 1, test::kMutations, kWords);
+}
 
 TEST(FuzzHelios, Points) {
   test::fuzz(
@@ -47,7 +49,7 @@ TEST(FuzzHelios, Points) {
         EXPECT_GE(cubes.points, cubes.centres.size());
         EXPECT_GT(cubes.centres.size(), size_t{0});
       },
-      1, 20000, 4, kWords);
+      1, test::kMutations, kWords);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ TEST(FuzzMerl, HeadAndLength) {
   ASSERT_NO_THROW(parse_merl(whole, "m.binary"));
   test::Mutator mutate(7);
   const test::Bytes head(whole.begin(), whole.begin() + 64);
-  for (int n = 0; n < 20000; ++n) {
+  for (size_t n = 0; n < test::mutations(test::kMutations); ++n) {
     try {
       parse_merl(mutate(head), "m.binary");
       FAIL() << "a table of 64 bytes was accepted";

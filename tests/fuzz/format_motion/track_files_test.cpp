@@ -23,7 +23,7 @@ TEST(TrackFilesFuzz, Fcd) {
         test::bytes_of("<fcd-export><timestep time=\"0.00\"><vehicle id=\"a\" x=\"1\" y=\"2\" angle=\"3\" type=\"t\" "
                        "z=\"4\" slope=\"5\"/><person id=\"p\" x=\"1\" y=\"2\" angle=\"3\"/></timestep><timestep "
                        "time=\"1\"><vehicle id=\"a\" x=\"2\" y=\"2\" angle=\"3\" type=\"t\"/></timestep></fcd-export>"),
-        [&](std::span<const std::byte> b) { read(text_of(b), options); }, 5, 20000, 4,
+        [&](std::span<const std::byte> b) { read(text_of(b), options); }, 5, test::kMutations,
         {"<vehicle ", "<timestep ", "</timestep>", "<![CDATA[", "<!--", "<!DOCTYPE x [", "&#0;", "&lt;", "1e300", "nan",
          "time=\"", "id=\"a\"", "angle=\"-1e9\"", "/>"});
   }
@@ -42,7 +42,7 @@ TEST(TrackFilesFuzz, Czml) {
           "2024-01-01T00:00:09Z\",\"epoch\":\"2024-01-01T00:00:00Z\",\"interpolationAlgorithm\":\"HERMITE\","
           "\"cartesianVelocity\":[0,7e6,0,0,1,2,3,9,7e6,9,9,1,2,3]},{\"interval\":\"2024-01-01T00:00:09Z/"
           "2024-01-01T00:01:00Z\",\"cartesian\":[7e6,0,0]}]}]"),
-      [&](std::span<const std::byte> b) { read(text_of(b), {context}); }, 7, 20000, 4,
+      [&](std::span<const std::byte> b) { read(text_of(b), {context}); }, 7, test::kMutations,
       {"cartesian", "LINEAR", "1e300", "-1", "\"interval\":", "[", "{", "null", "2024-02-30T00:00:00Z", "/", "FIXED"});
 }
 
@@ -52,7 +52,7 @@ TEST(TrackFilesFuzz, Stk) {
                             "00:00:00.0\nInterpolationMethod Lagrange\nInterpolationOrder 2\nCentralBody Earth\n"
                             "CoordinateSystem Fixed\nDistanceUnit Meters\nEphemerisTimePos\n0 7e6 0 0\n60 7e6 4e5 "
                             "0\n120 7e6 8e5 0\nEND Ephemeris\n"),
-             [&](std::span<const std::byte> b) { read(text_of(b), {context}); }, 8, 20000, 4,
+             [&](std::span<const std::byte> b) { read(text_of(b), {context}); }, 8, test::kMutations,
              {"EphemerisLLATimePosVel", "END", "BEGIN", "Kilometers", "1e300", "nan", "InterpolationSamplesM1 15", "#",
               "30 Feb 2024", "-1"});
 }
@@ -74,7 +74,7 @@ TEST(TrackFilesFuzz, ControlTables) {
                    ASSERT_LT(*row, table.rows.size());
                  }
              },
-             6, 20000, 4, {"period_s: 1e-6", "1e300", "-1", "rows: ", "time_s: ", "file: ", "true", "[", "{"});
+             6, test::kMutations, {"period_s: 1e-6", "1e300", "-1", "rows: ", "time_s: ", "file: ", "true", "[", "{"});
 }
 
 }  // namespace

@@ -31,10 +31,12 @@ const std::vector<std::string> kWords{
 }  // namespace
 
 TEST(FuzzObj, Cube) {
-  test::fuzz(test::bytes_of(read_text(SUITE_TEST_DATA "/odd/issue-138.obj")), read_and_check, 1, 20000, 4, kWords);
+  test::fuzz(test::bytes_of(read_text(SUITE_TEST_DATA "/odd/issue-138.obj")), read_and_check, 1, test::kMutations,
+             kWords);
 }
 TEST(FuzzObj, Polygons) {
-  test::fuzz(test::bytes_of(read_text(SUITE_TEST_DATA "/odd/issue-319-002.obj")), read_and_check, 2, 20000, 4, kWords);
+  test::fuzz(test::bytes_of(read_text(SUITE_TEST_DATA "/odd/issue-319-002.obj")), read_and_check, 2, test::kMutations,
+             kWords);
 }
 
 }  // namespace suite

@@ -54,8 +54,8 @@ const std::vector<std::string> kWords{"\n",
                                       "binary_big_endian",
                                       "int8"};
 
-TEST(FuzzPly, Text) { test::fuzz(test::bytes_of(text()), read_and_check, 1, 20000, 4, kWords); }
-TEST(FuzzPly, Binary) { test::fuzz(test::bytes_of(binary()), read_and_check, 2, 20000, 4, kWords); }
+TEST(FuzzPly, Text) { test::fuzz(test::bytes_of(text()), read_and_check, 1, test::kMutations, kWords); }
+TEST(FuzzPly, Binary) { test::fuzz(test::bytes_of(binary()), read_and_check, 2, test::kMutations, kWords); }
 
 }  // namespace
 }  // namespace suite

@@ -24,7 +24,7 @@ TEST(FuzzReptran, Files) {
           const auto provider = representative_gases(read_reptran(bands).table);
           for (const auto& band : provider->bands(1, 1e6)) provider->absorbers(band, levels);
         },
-        31, 20000, 3);
+        31, test::kMutations);
   }
 }
 

@@ -52,7 +52,7 @@ TEST_F(FuzzScene, Text) {
     const Scene scene = bake_scene(draft, report);
     if (report.ok()) check_scene(scene, path);
   };
-  test::fuzz(test::bytes_of(kText), as_file("s.yaml", read), 1, 20000, 4,
+  test::fuzz(test::bytes_of(kText), as_file("s.yaml", read), 1, test::kMutations,
              {"{",
               "}",
               "[",
@@ -100,7 +100,7 @@ TEST_F(FuzzScene, PackedScene) {
   all.add("deflate");
   write_scene(scene, {"g", "a", "h", {{"", "00"}}}, folder_ / "packed.h5", all);
   test::fuzz(read_bytes(folder_ / "packed.h5"),
-             as_file("s.h5", [](const std::string& path) { check_scene(read_scene(path), path); }), 22, 3000);
+             as_file("s.h5", [](const std::string& path) { check_scene(read_scene(path), path); }), 22);
 }
 
 TEST_F(FuzzScene, GeoTiff) {
@@ -120,17 +120,17 @@ TEST_F(FuzzScene, PortableMapsAndGdalTags) {
   const auto read = [](const std::string& path) { values_of(read_raster(path, 1 << 22), Numbers::scaled); };
   for (const char* map :
        {"P2\n# grey\n3 2\n1000\n0 1 2 3 4 1000\n", "P5 3 2 255\nabcdef", "P6 1 2 65535\nabcdefghijkl"})
-    test::fuzz(test::bytes_of(map), as_file("m.pgm", read), 23, 300, 2, {"65536", "0", "-1", "#", "\n", "99999999999"});
-  test::fuzz(read_bytes(SUITE_SOURCE_DIR "/tests/data/raster/dem_scaled.tif"), as_file("d.tif", read), 24, 300, 2,
+    test::fuzz(test::bytes_of(map), as_file("m.pgm", read), 23, 300, {"65536", "0", "-1", "#", "\n", "99999999999"});
+  test::fuzz(read_bytes(SUITE_SOURCE_DIR "/tests/data/raster/dem_scaled.tif"), as_file("d.tif", read), 24, 300,
              {"nan", "1e999", "sample=\"9\"", "</Item>", "role=\"scale\""});
 }
 
 TEST_F(FuzzScene, CurveTable) {
   test::fuzz(test::bytes_of("# nm\n400 0.1\n500 0.2\n600 0.3\n"),
-             as_file("c.txt", [](const std::string& p) { read_curve(p, {}); }), 5, 20000, 2,
+             as_file("c.txt", [](const std::string& p) { read_curve(p, {}); }), 5, test::kMutations,
              {"nan", "1e999", "-1", "\r", ",", ";", "#"});
   test::fuzz(test::bytes_of("Y Units: percent\n0.4 10\n0.5 20\n"),
-             as_file("c.txt", [](const std::string& p) { read_curve(p, {}); }), 6, 20000, 2,
+             as_file("c.txt", [](const std::string& p) { read_curve(p, {}); }), 6, test::kMutations,
              {"nm", "percent", "0", "1e999"});
 }
 
@@ -138,8 +138,8 @@ TEST_F(FuzzScene, Emissivity) {
   std::string ems = "2\n";
   for (int k = 0; k < 91; ++k) ems += "1.0\n";
   ems += "CURVE_BEGIN\n0.4\t0.9\n0.8\t0.7\nCURVE_BEGIN\n0.4 0.5\n";
-  test::fuzz(test::bytes_of(ems), as_file("c.ems", [](const std::string& p) { read_curve_family(p, {}); }), 7, 20000, 3,
-             {"CURVE_BEGIN", "CURVE_END", "99999", "\n", "0"});
+  test::fuzz(test::bytes_of(ems), as_file("c.ems", [](const std::string& p) { read_curve_family(p, {}); }), 7,
+             test::kMutations, {"CURVE_BEGIN", "CURVE_END", "99999", "\n", "0"});
 }
 
 TEST_F(FuzzScene, SpectralLibrary) {
@@ -149,13 +149,13 @@ TEST_F(FuzzScene, SpectralLibrary) {
       "ENVI\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\nwavelength units = Nanometers\nspectra names = {a, "
       "b}\nwavelength = {400, 500,\n 800}\n";
   test::fuzz(test::bytes_of(header),
-             as_file("l.sli.hdr", [&](const std::string&) { read_curve_family(folder_ / "l.sli", {}); }), 8, 20000, 3,
-             {"{", "}", "=", ",", "99999999999", "-1", "\n", "wavelength"});
+             as_file("l.sli.hdr", [&](const std::string&) { read_curve_family(folder_ / "l.sli", {}); }), 8,
+             test::kMutations, {"{", "}", "=", ",", "99999999999", "-1", "\n", "wavelength"});
 }
 
 TEST_F(FuzzScene, InstanceTable) {
   test::fuzz(test::bytes_of("x,y,z,heading_deg,scale\n1,2,3,270,2\n-1, 0.5, 0, 0, 1\n"),
-             as_file("t.csv", [](const std::string& p) { read_instances(p); }), 9, 20000, 3,
+             as_file("t.csv", [](const std::string& p) { read_instances(p); }), 9, test::kMutations,
              {"qw", ",", "nan", "1e999", "scale", "\n", "#", "0"});
 }
 

@@ -85,14 +85,15 @@ void read(const TempFolder& folder, std::span<const std::byte> bytes) {
 TEST(FuzzSim, SourcesAndSimpleSensors) {
   const TempFolder folder;
   test::fuzz(
-      test::bytes_of(kSources + kSensors), [&](std::span<const std::byte> b) { read(folder, b); }, 1, 20000, 4, kWords);
+      test::bytes_of(kSources + kSensors), [&](std::span<const std::byte> b) { read(folder, b); }, 1, test::kMutations,
+      kWords);
 }
 
 TEST(FuzzSim, Platform) {
   const TempFolder folder;
   test::fuzz(
       test::bytes_of("scene: scene.h5\nsensors:\n" + platform()),
-      [&](std::span<const std::byte> b) { read(folder, b); }, 2, 20000, 4, kWords);
+      [&](std::span<const std::byte> b) { read(folder, b); }, 2, test::kMutations, kWords);
 }
 
 }  // namespace suite

@@ -31,11 +31,9 @@ void resealed(std::span<const std::byte> bytes) {
 const std::vector<std::string> kWords{"\"leaves\":", "\"sheets\":2", "1e308", "-1",   "99999999", "\"phi_count\":1000",
                                       "[",           "\"half\"",     "null",  "paper"};
 
-TEST(FuzzSqt, Aligned) {
-  test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), parse_and_ask, 1, 5000, 2);
-}
+TEST(FuzzSqt, Aligned) { test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), parse_and_ask); }
 TEST(FuzzSqt, AlignedBehindTheChecksum) {
-  test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), resealed, 2, 20000, 4, kWords);
+  test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), resealed, 2, test::kMutations, kWords);
 }
 // Cut off at every byte, with the checksum of what is left.
 TEST(FuzzSqt, EveryTruncationIsRefused) {
@@ -51,7 +49,7 @@ TEST(FuzzSqt, EveryTruncationIsRefused) {
   }
 }
 TEST(FuzzSqt, PaperBehindTheChecksum) {
-  test::fuzz(pack_sqt(test::small_paper(test::glossy()), {}, {}), resealed, 3, 20000, 4, kWords);
+  test::fuzz(pack_sqt(test::small_paper(test::glossy()), {}, {}), resealed, 3, test::kMutations, kWords);
 }
 
 }  // namespace

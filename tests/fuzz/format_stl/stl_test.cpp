@@ -33,8 +33,8 @@ const char* const kText =
     "endsolid c\n";
 const std::vector<std::string> kWords{"vertex", " nan", " 1e999", "endsolid", "facet", "solid\n", "\n", "-0", "1e-999"};
 
-TEST(FuzzStl, Text) { test::fuzz(test::bytes_of(kText), read_and_check, 1, 20000, 4, kWords); }
-TEST(FuzzStl, Binary) { test::fuzz(test::bytes_of(binary()), read_and_check, 2, 20000, 4); }
+TEST(FuzzStl, Text) { test::fuzz(test::bytes_of(kText), read_and_check, 1, test::kMutations, kWords); }
+TEST(FuzzStl, Binary) { test::fuzz(test::bytes_of(binary()), read_and_check, 2, test::kMutations); }
 
 }  // namespace
 }  // namespace suite

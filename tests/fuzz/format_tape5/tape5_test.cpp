@@ -21,7 +21,7 @@ TEST(Tape5Fuzz, Decks) {
                  ASSERT_TRUE(r.model >= 1 && r.model <= 6 && r.zenith);
                }
              },
-             15, 20000, 4, {"    1", "    3", "    4", "          ", "1e300", "nan", "-1", "\n", "TMF", "N"});
+             15, test::kMutations, {"    1", "    3", "    4", "          ", "1e300", "nan", "-1", "\n", "TMF", "N"});
 }
 
 }  // namespace

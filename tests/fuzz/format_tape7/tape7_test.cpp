@@ -28,7 +28,7 @@ TEST(Tape7Fuzz, Runs) {
                  run.two_way_transmittance();
                }
              },
-             11, 20000, 4,
+             11, test::kMutations,
              {"FREQ", "COMBIN", "TOTAL", "SOLAR", "TOT TRANS", "-9999.", "********", "1.0-300", "1.0+300", "1e300",
               "          ", "\n", "-1", "nan"});
 }

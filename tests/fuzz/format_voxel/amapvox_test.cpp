@@ -21,7 +21,7 @@ const std::string kFile =
 
 const std::vector<std::string> kWords{"\n", " -1", " 99999999999", " NA", " 1e999", "#split: 9999 9999 9\n", "#", ":"};
 
-TEST(FuzzAmapVox, Text) { test::fuzz(test::bytes_of(kFile), read_and_check, 1, 20000, 4, kWords); }
+TEST(FuzzAmapVox, Text) { test::fuzz(test::bytes_of(kFile), read_and_check, 1, test::kMutations, kWords); }
 
 }  // namespace
 }  // namespace suite

@@ -23,7 +23,7 @@ TEST(FuzzVoxel, Text) {
           "type: uint8, scale: 0.5}\n  temperature_k: 300\n  medium: {values: [0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, "
           "1, "
           "0, 1, 0, 1, 0, 1, 0, 1, 0, 1]}\n"),
-      read, 1, 20000, 4,
+      read, 1, test::kMutations,
       {"{", "}", "[", "]", ": ", "nan", "1e999", "-1", "0", "1e6", "999999", "float64", "material", "\n", "  "});
 }
 

@@ -23,7 +23,7 @@ void check(std::span<const std::byte> b, const WeatherOptions& options) {
 void fuzz(const std::string& text, uint64_t seed, const std::vector<std::string>& words,
           const WeatherOptions& options = {}) {
   test::fuzz(
-      test::bytes_of(text), [&](std::span<const std::byte> b) { check(b, options); }, seed, 20000, 2, words);
+      test::bytes_of(text), [&](std::span<const std::byte> b) { check(b, options); }, seed, test::kMutations, words);
 }
 
 // The first lines and a day of rows.

@@ -14,7 +14,7 @@ TEST(FuzzStudy, Table) {
              [](std::span<const std::byte> b) {
                rows_from_csv({reinterpret_cast<const char*>(b.data()), b.size()}, "id", "study.csv");
              },
-             1, 20000, 4, {",", "\n", "nan", "-1", "1e999", "\"", "id", "#"});
+             1, test::kMutations, {",", "\n", "nan", "-1", "1e999", "\"", "id", "#"});
 }
 
 }  // namespace suite

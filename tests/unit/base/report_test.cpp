@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "base/json.h"
@@ -55,6 +56,31 @@ Report report() {
                  {"SP301", Severity::info, "fyi", ""}});
 }
 }  // namespace
+
+// A scene of 200 objects with one fault each is told in a few lines, by the worst of them; what has to be mended one by
+// one is not, and the JSON has all.
+TEST(Report, FoldsWhatManyAssetsShare) {
+  Report r = report();
+  for (int k = 0; k < 200; ++k) {
+    const std::string asset = strf("house_%d.obj", k);
+    r.add("SP201", asset, {{asset, k + 1, 0, {}, -1}, "a sliver"}, k == 57 ? 9 : 1);
+  }
+  const std::string text = r.text();
+  EXPECT_LT(std::ranges::count(text, '\n'), 6);
+  EXPECT_THAT(text, HasSubstr("200 files or objects: warning [SP201] x208: odd\n    most, x9, in house_57.obj:\n"
+                              "    house_57.obj:58: a sliver\n"));
+  EXPECT_THAT(text, Not(HasSubstr("house_58.obj")));
+  EXPECT_THAT(text, HasSubstr("208 warnings of 1 kind"));
+  EXPECT_THAT(r.json(), HasSubstr("house_199.obj"));
+  r.mute("SP201");
+  EXPECT_THAT(r.text(), Not(HasSubstr("SP201")));
+  // Three are told one by one, and so are errors.
+  Report few = report();
+  for (const char* asset : {"a", "b", "c"}) few.add("SP201", asset, {{}, "a sliver"});
+  for (int k = 0; k < 10; ++k) few.add("SP101", strf("e%d", k), {{}, "bad"});
+  EXPECT_THAT(few.text(), HasSubstr("c: warning [SP201] x1"));
+  EXPECT_THAT(few.text(), HasSubstr("e9: error [SP101] x1"));
+}
 
 TEST(Report, CountsEverythingAndShowsThreeExamplesPerCodeAndAsset) {
   Report r = report();
