@@ -64,7 +64,7 @@ FAULTS = [
           "(5792105 / (57.362 - s) + 167917 / (238.0185 - s)) * (pressure", "(unit_air_shells|physics_air_refraction)"),
     Fault("line_energy", "sign", "libs/air/lines.cpp", "(1 / kReference - 1 / temperature));", "(1 / temperature - 1 / kReference));", "unit_air_lines"),
     Fault("mie_orders", "missing term", "libs/air/mie.cpp", "std::ceil(x + 4.5 * std::cbrt(x) + 4)", "std::ceil(x)", "physics_air_mie"),
-    Fault("sea_salinity", "factor", "libs/water/sea_water.cpp", "0.01155 / nm;", "0.1155 / nm;", "unit_water_water|physics_optics_sea"),
+    Fault("sea_salinity", "factor", "libs/water/sea_water.cpp", "0.01155 / nm;", "0.1155 / nm;", "unit_water_water"),
     # heat
     Fault("slab_quadratic", "factor", "libs/thermal/slab.cpp", "k2[j] * (squares + a * b) * (1.0 / 3)", "k2[j] * (squares + a * b) * (1.0 / 2)",
           "unit_thermal_models|physics_thermal_slab"),
@@ -86,7 +86,7 @@ FAULTS = [
     Fault("tile_split", "off by one", "libs/trace/tile_bvh.cpp", "for (const uint32_t i : order) box.grow(boxes[i]), centers",
           "for (const uint32_t i : order.subspan(order.size() > 2)) box.grow(boxes[i]), centers", "unit_trace_tile_bvh"),
     Fault("sqt_weights", "factor 2", "libs/sqt_fit/errors.cpp", "if (sphere) near = folded.z == 0 ? 0 : 0.5 * near;",
-          "if (sphere) near = folded.z == 0 ? 0 : near;", "unit_sqt_fit_(phase|target)"),
+          "if (sphere) near = folded.z == 0 ? 0 : near;", "unit_sqt_fit_(phase|target|stability)|stat_sqt_(verbs|energy)"),
     Fault("sqt_entry", "swapped index", "libs/sqt/tree.cpp", "(((at.y >> shift) & mask) << bits) + ((at.x >> shift) & mask);",
           "(((at.x >> shift) & mask) << bits) + ((at.y >> shift) & mask);", "unit_sqt_\\w+"),
     # readers
