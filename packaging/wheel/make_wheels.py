@@ -89,22 +89,26 @@ def combined(tree: Path, work: Path) -> Path:
     folder = unpack(next((work / "pure").glob("*.whl")), work / "all")
     write_programs(tree, folder / PROGRAMS)
     info = dist_info(folder)
-    (info / "WHEEL").write_text(f"Wheel-Version: 1.0\nGenerator: scripts/wheel\nRoot-Is-Purelib: false\nTag: py3-none-linux_x86_64\n")
-    run(sys.executable, "-m", "wheel", "pack", folder, "-d", work / "packed")
-    return next((work / "packed").glob("*.whl"))
+    (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: scripts/wheel\nRoot-Is-Purelib: false\nTag: py3-none-linux_x86_64\n")
+    # Without compression: auditwheel takes it apart again, and writes its list of files anew.
+    wheel = work / f"{info.name.removesuffix('.dist-info')}-py3-none-linux_x86_64.whl"
+    with zipfile.ZipFile(wheel, "w", zipfile.ZIP_STORED) as packed:
+        for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+            packed.write(path, path.relative_to(folder))
+    return wheel
 
 
 def repaired(wheel: Path, libraries: list[Path], work: Path) -> Path:
     """Every library outside of the policy bundled; auditwheel fails where one cannot be."""
     paths = os.pathsep.join(str(p.resolve()) for p in libraries)
-    run(sys.executable, "-m", "auditwheel", "repair", "--strip", "--plat", PLATFORM, "--only-plat", "-w", work / "repaired", wheel,
+    run(sys.executable, "-m", "auditwheel", "repair", "--strip", "--zip-compression-level", "0", "--plat", PLATFORM, "--only-plat", "-w", work / "repaired", wheel,
         env={**os.environ, "LD_LIBRARY_PATH": paths})
     return next((work / "repaired").glob("*.whl"))
 
 
 def package_of(library: str) -> str | None:
     """The Debian package of a bundled library: libpng16-0123abcd.so.16.39 is of libpng16.so.16.39; None = of no package."""
-    name = re.sub(r"-[0-9a-f]{8}(?=\.so)", "", library)
+    name = re.sub(r"-[0-9a-f]{8}(?=\.)", "", library)
     stem = name.split(".so")[0]
     for folder in ("/usr/lib/x86_64-linux-gnu", "/lib/x86_64-linux-gnu"):
         for file in [Path(folder) / name, *sorted(Path(folder).glob(stem + ".so*"))]:
