@@ -21,7 +21,7 @@ PROGRAMS = "remote_scenes_programs"
 LIBRARIES = "remote_scenes.libs"
 PREP = {"scene-prep", "assimp.so"}
 """What is part of the GPL's wheel, with the libraries that nothing else needs: assimp reads models, which scene-prep alone does."""
-COMPILED_IN = {"remote-scenes": ["libhdf5-103-1", "libgeotiff5", "libcli11-dev", "nlohmann-json3-dev", "libtinygltf-dev", "libfmt-dev"],
+COMPILED_IN = {"remote-scenes": ["libcli11-dev", "nlohmann-json3-dev", "libtinygltf-dev", "libfmt-dev"],
                "remote-scenes-prep": ["libcgal-dev"]}
 """Debian packages of which code is in the binaries themselves."""
 
@@ -90,11 +90,13 @@ def combined(tree: Path, work: Path) -> Path:
     write_programs(tree, folder / PROGRAMS)
     info = dist_info(folder)
     (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: scripts/wheel\nRoot-Is-Purelib: false\nTag: py3-none-linux_x86_64\n")
-    # Without compression: auditwheel takes it apart again, and writes its list of files anew.
+    # Without compression and checksums: auditwheel goes by the list of files, and writes both anew.
+    files = sorted(p.relative_to(folder) for p in folder.rglob("*") if p.is_file())
+    (info / "RECORD").write_text("".join(f"{p},,\n" for p in files))
     wheel = work / f"{info.name.removesuffix('.dist-info')}-py3-none-linux_x86_64.whl"
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_STORED) as packed:
-        for path in sorted(p for p in folder.rglob("*") if p.is_file()):
-            packed.write(path, path.relative_to(folder))
+        for path in files:
+            packed.write(folder / path, path)
     return wheel
 
 
@@ -134,6 +136,9 @@ def write_licences(info: Path, distribution: str, libraries: set[Path], openimag
             for file in openimageio.iterdir():
                 shutil.copy2(file, third / f"OpenImageIO.{file.name}")
             rows.append(f"- {library.name}: OpenImageIO, as its authors publish it; licenses/third_party/OpenImageIO.*")
+            continue
+        if library.name.startswith(("libcurl", "libproj")):
+            rows.append(f"- {library.name}: only stands in for that library, without any of its code (packaging/wheel/stand_in of the suite)")
             continue
         package = package_of(library.name)
         if not package:

@@ -35,9 +35,7 @@ suite_vendor(erfa PkgConfig::ERFA)
 find_package(PNG REQUIRED)
 suite_vendor(png PNG::PNG)
 
-# For installations that bring their libraries along (scripts/wheel). What of HDF5 and libgeotiff is used needs neither curl nor
-# PROJ, which their shared libraries pull in with forty others.
-option(SUITE_PORTABLE "link HDF5 and libgeotiff statically" OFF)
+# For installations that bring their libraries along (scripts/wheel): Debian's OpenImageIO pulls in 250 libraries.
 set(SUITE_OPENIMAGEIO "" CACHE PATH "folder with include and lib of an OpenImageIO in place of the system's, or empty")
 if(SUITE_OPENIMAGEIO)
   file(GLOB OPENIMAGEIO_LIBRARIES ${SUITE_OPENIMAGEIO}/lib/libOpenImageIO*.so*)
@@ -52,19 +50,9 @@ else()
 endif()
 
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)  # of Debian, of others
-if(SUITE_PORTABLE)
-  find_library(HDF5_STATIC libhdf5_serial.a REQUIRED)
-  find_library(SZIP_LIBRARY sz REQUIRED)
-  find_package(ZLIB REQUIRED)
-  suite_vendor(hdf5 ${HDF5_STATIC} ${SZIP_LIBRARY} ZLIB::ZLIB ${CMAKE_DL_LIBS} m)
-  target_include_directories(vendor_hdf5 SYSTEM INTERFACE ${HDF5_INCLUDE_DIRS})
-  set(geotiff libgeotiff.a)
-else()
-  suite_vendor(hdf5 PkgConfig::HDF5)
-  set(geotiff geotiff)
-endif()
+suite_vendor(hdf5 PkgConfig::HDF5)
 
-find_library(GEOTIFF_LIBRARY ${geotiff} REQUIRED)
+find_library(GEOTIFF_LIBRARY geotiff REQUIRED)
 find_path(GEOTIFF_INCLUDE geotiff.h PATH_SUFFIXES geotiff REQUIRED)
 pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
 suite_vendor(geotiff ${GEOTIFF_LIBRARY} PkgConfig::TIFF)
