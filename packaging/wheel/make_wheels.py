@@ -157,7 +157,7 @@ def write_licences(info: Path, distribution: str, libraries: set[Path], openimag
 
 
 def version_of(info: Path) -> str:
-    return info.name.split("-")[1].removesuffix(".dist-info")
+    return info.name.removesuffix(".dist-info").split("-")[1]
 
 
 def entry_points(names: list[str]) -> str:

@@ -59,14 +59,15 @@ suite_vendor(geotiff ${GEOTIFF_LIBRARY} PkgConfig::TIFF)
 target_include_directories(vendor_geotiff SYSTEM INTERFACE ${GEOTIFF_INCLUDE})
 
 # Optional: OpenVDB volumes. Its CMake module asks for more than is needed.
+option(SUITE_OPENVDB "volumes of OpenVDB, where it is found" ON)
 find_path(OPENVDB_INCLUDE openvdb/openvdb.h)
 find_library(OPENVDB_LIBRARY openvdb)
-if(OPENVDB_INCLUDE AND OPENVDB_LIBRARY)
+if(SUITE_OPENVDB AND OPENVDB_INCLUDE AND OPENVDB_LIBRARY)
   suite_vendor(openvdb ${OPENVDB_LIBRARY} TBB::tbb)
   target_include_directories(vendor_openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE})
   target_compile_options(vendor_openvdb INTERFACE -Wno-deprecated-declarations)
 else()
-  message(STATUS "OpenVDB was not found: .vdb files will be refused")
+  message(STATUS "without OpenVDB: .vdb files will be refused")
 endif()
 
 # Optional: models of FBX, Collada and 3DS.
