@@ -16,7 +16,7 @@ from elftools.elf.elffile import ELFFile
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-PLATFORM = "manylinux_2_36_x86_64"
+PLATFORM = "manylinux_2_35_x86_64"
 PROGRAMS = "remote_scenes_programs"
 LIBRARIES = "remote_scenes.libs"
 PREP = {"scene-prep", "assimp.so"}
