@@ -92,6 +92,10 @@ function(suite_c_library name)
   add_library(${name} SHARED ${A_SOURCES})
   target_link_libraries(${name} PRIVATE suite_flags ${A_USES})
   target_link_options(${name} PRIVATE LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/${name}.map LINKER:--no-undefined)
+  # The loader refuses it on a lesser processor; programs say so themselves (apps/start).
+  if(SUITE_ARCH MATCHES "^x86-64-v[234]$")
+    target_link_options(${name} PRIVATE LINKER:-z,${SUITE_ARCH})
+  endif()
   set_target_properties(${name} PROPERTIES VERSION 1.0 SOVERSION 1 LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
                         LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.map)
   install(TARGETS ${name} LIBRARY DESTINATION lib)
