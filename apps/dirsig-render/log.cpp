@@ -96,6 +96,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   Json j = Json::object();
   j.set("command", command_line());
   j.set("version", kVersion);
+  if (const std::string commit = build_commit(); !commit.empty()) j.set("commit", commit);
   j.set("ray_tracer", Tracer::engine());
   j.set("threads", threads());
   if (options.executor) j.set("ranks", options.executor->processes());

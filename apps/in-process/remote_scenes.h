@@ -22,7 +22,7 @@ extern "C" {
 enum { RS_OK = 0, RS_INPUT = 1, RS_BUG = 3 };
 
 int rs_interface(void);       /* RS_INTERFACE of the library */
-const char* rs_version(void); /* of the suite, as "0.1.0" */
+const char* rs_version(void); /* of the suite, as "0.9.0" */
 const char* rs_message(void); /* of the last refused call of this thread, without a line's end; empty before */
 
 const char* rs_told(void); /* what the last rs_simulation_... of this thread has to warn of, a sentence a line */

@@ -1,6 +1,7 @@
 #include "formats/air_table/air_table.h"
 
 #include "base/files.h"
+#include "formats/hdf5/format_version.h"
 #include "formats/hdf5/h5.h"
 
 namespace suite {
@@ -35,8 +36,7 @@ void write_air_table(const std::string& path, const GasTable& table) {
 GasTable read_air_table(const std::string& path) {
   h5::Reader r(path, "bake the table again");
   if (r.text("format") != kFormat) r.fail("is not an air table");
-  if (const std::string version = r.text("version"); version != kVersion)
-    r.fail("is of version '" + version + "', version " + kVersion + " is read");
+  h5::check_version(r, kVersion);
   GasTable table;
   table.source = r.text("source");
   // The axes first, each within its bounds: what follows is as large as their product.

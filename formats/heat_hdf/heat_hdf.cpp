@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "formats/hdf5/format_version.h"
 #include "formats/hdf5/h5.h"
 #include "formats/heat_hdf/cut_hdf.h"
 
@@ -17,8 +18,7 @@ std::vector<uint32_t> halves(uint64_t v) { return {static_cast<uint32_t>(v >> 32
 
 void check_kind(h5::Reader& r) {
   if (r.text("format") != kFormat) r.fail("holds no temperatures of elements");
-  if (const std::string version = r.text("version"); version != kVersion)
-    r.fail("is of version '" + version + "', version " + kVersion + " is read");
+  h5::check_version(r, kVersion);
 }
 
 void check_finite(h5::Reader& r, const std::vector<float>& values, const char* name, float low, float high) {

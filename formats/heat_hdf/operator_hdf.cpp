@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "base/files.h"
+#include "formats/hdf5/format_version.h"
 #include "formats/hdf5/h5.h"
 #include "formats/heat_hdf/cut_hdf.h"
 
@@ -175,8 +176,7 @@ SunPath take_path(h5::Reader& r) {
 
 void check_kind(h5::Reader& r) {
   if (r.text("format") != kFormat) r.fail("holds no paths of a balance of heat");
-  if (const std::string version = r.text("version"); version != kVersion)
-    r.fail("is of version '" + version + "', version " + kVersion + " is read");
+  h5::check_version(r, kVersion);
 }
 
 // What is in a file of this kind and fits.

@@ -4,6 +4,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "formats/hdf5/format_version.h"
 #include "formats/render_state/internal.h"
 
 namespace suite {
@@ -33,8 +34,7 @@ const std::array<SumsColumn, Accumulators::kColumns> kSumsColumns{{
 
 void check_identity(h5::Reader& reader, const std::string& path, const StateIdentity& identity) {
   if (reader.text("format") != kFormat) reader.fail("is not the state of a run");
-  if (const std::string version = reader.text("version"); version != kVersion)
-    reader.fail("has version '" + version + "', this program reads " + kVersion);
+  h5::check_version(reader, kVersion);
   for (const auto& [key, mine] : identity)
     if (const std::string theirs = reader.text(key); theirs != mine)
       throw Error(Where{path, 0, 0, {}, -1},

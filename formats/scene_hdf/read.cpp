@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "base/files.h"
+#include "formats/hdf5/format_version.h"
 #include "formats/scene_hdf/columns.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "optics/models.h"
@@ -49,8 +50,7 @@ void renumber_bindings(const Reader& r, Scene& s, const std::vector<uint32_t>& n
 
 void check_kind(const Reader& r) {
   if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
-  if (const std::string version = r.text("version"); version != h5::kVersionText)
-    r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
+  h5::check_version(r, h5::kVersionText);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace suite {
 // Where a fit came from; all of it goes into the header.
 struct SqtProvenance {
   std::string command;       // canonical command line
-  std::string tool;          // "sqt-fit 0.1.0"
+  std::string tool;          // "sqt-fit 0.9.0"
   std::string input;         // file name or model specification
   std::string input_sha256;  // of the input file, empty for models
   std::string conventions;   // of the input, one line

@@ -4,8 +4,6 @@
 #pragma once
 #include <string>
 
-#include "base/run_app.h"
-
 namespace suite {
 
 // What the part `name` exports as `symbol`. The part is loaded at the first call, by any thread, and stays. It is
@@ -13,12 +11,13 @@ namespace suite {
 // not there, cannot be loaded, is of another version of the suite, or exports no such symbol.
 const void* late_symbol(const std::string& name, const char* symbol);
 
-// Stands once in a part: which version of the suite it is of.
-#define SUITE_PART_VERSION                         \
-  extern "C" {                                     \
-  extern const char* const suite_part_version;     \
-  const char* const suite_part_version = kVersion; \
-  }                                                \
+// Stands once in a part: which version of the suite it is of. suite_part() defines SUITE_VERSION, as a part links
+// nothing of ours.
+#define SUITE_PART_VERSION                              \
+  extern "C" {                                          \
+  extern const char* const suite_part_version;          \
+  const char* const suite_part_version = SUITE_VERSION; \
+  }                                                     \
   static_assert(true)
 
 }  // namespace suite

@@ -129,16 +129,12 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   end_on_signals(info.name.c_str());
   track_inputs();
   remember_command_line(info.name, argc, argv);
-  if (!__builtin_cpu_supports("avx2")) {
-    say(info.name + ": error: this build needs a processor with AVX2; build with -DSUITE_ARCH=x86-64\n");
-    return 1;
-  }
   Cli cli(info.name, info.description);
   CLI::App& app = cli.impl().app;
   bool quiet = false;
   long long thread_count = 0;
   try {
-    app.set_version_flag("--version", info.name + " " + kVersion);
+    app.set_version_flag("--version", info.name + " " + version_text());
     declare(cli);
     app.add_flag("-q,--quiet", quiet, "print errors, warnings and results, no progress");
     app.add_option("-j,--threads", thread_count, "worker threads; 0 = one per core; the results do not depend on it")

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace suite {
+#include "base/version.h"
 
-inline constexpr const char* kVersion = "0.1.0";
+namespace suite {
 
 // The options of one executable. Values keep what the caller put there when the option is not given.
 class Cli {

@@ -6,6 +6,7 @@ Write a Scene and a Simulation, have the programs prepare and render them, read 
 
 The programs check what is written; what they refuse is an InputError with file, line and message.
 """
+from ._version import __version__
 from .chips import write_chips
 from .envi import EnviHeader, FormatError, open_envi, read_header, read_values
 from .errors import (Finding, InputError, Interrupted, ProgramBug, ProgramError, ProgramMissing, ProgramWarning,
@@ -14,7 +15,7 @@ from .fitted import FittedFunction, direction, open_sqt
 from .library import set_threads
 from .lit import LitScene, Radiance, open_simulation
 from .netcdf import write_netcdf
-from .programs import Run, find_program, run_program, version
+from .programs import Found, Run, find_program, run_program, version, where_is
 from .results import Result
 from .scene import (Material, Medium, Object, Origin, Placement, PreparedScene, Report, Scene, box, check_scene, cylinder, disk,
                     layer, mesh, plane, prepare_scene, sphere, terrain)
@@ -24,13 +25,12 @@ from .temperatures import open_temperatures
 from .traced import Hits, TracedScene, open_scene
 from .tree import Curve, CurveFile, CurveLike, Keys, OpenKeys
 
-__version__ = "0.1.0"
 __all__ = [
     "Atmosphere", "Band", "Curve", "CurveFile", "CurveLike", "EnviHeader", "Finding", "Fisheye", "FittedFunction",
-    "FormatError", "FrameCamera", "Hits", "InputError", "Interrupted", "Keys", "Lamp", "LitScene", "Material", "Medium", "Moon", "Object",
+    "FormatError", "Found", "FrameCamera", "Hits", "InputError", "Interrupted", "Keys", "Lamp", "LitScene", "Material", "Medium", "Moon", "Object",
     "OpenKeys", "Origin", "Orthographic", "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError",
     "ProgramMissing", "ProgramWarning", "Radiance", "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun",
     "TracedScene", "UsageError", "bands", "box", "check_scene", "cylinder", "direction", "disk", "find_program", "layer",
     "mesh", "open_envi", "open_scene", "open_simulation", "open_sqt", "open_temperatures", "plane", "prepare_scene", "read_header",
-    "read_values", "render", "run_program", "set_threads", "sphere", "terrain", "version", "write_chips", "write_netcdf",
+    "read_values", "render", "run_program", "set_threads", "sphere", "terrain", "version", "where_is", "write_chips", "write_netcdf",
 ]

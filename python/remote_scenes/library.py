@@ -76,9 +76,18 @@ def find_library() -> Path:
     return path
 
 
+def _hint(problem: str) -> str:
+    if "ISA level" not in problem:
+        return ""
+    return "; this processor lacks AVX2 or what else the suite was built for: build it with cmake -DSUITE_ARCH=x86-64"
+
+
 @lru_cache(maxsize=None)
 def _loaded(path: Path) -> ctypes.CDLL:
-    library = ctypes.CDLL(str(path))
+    try:
+        library = ctypes.CDLL(str(path))
+    except OSError as problem:
+        raise ProgramMissing(f"{path} cannot be loaded: {problem}{_hint(str(problem))}") from None
     library.rs_interface.restype = c_int
     if library.rs_interface() < INTERFACE:
         raise ProgramMissing(f"{path} is older than this package needs")

@@ -21,30 +21,60 @@ Progress = Union[bool, Callable[[str], None], None]
 call. None: lines of progress to standard error in a terminal or a notebook, nowhere else."""
 
 FOLDER_VARIABLE = "REMOTE_SCENES_BIN"
+PROGRAMS = ("scene-prep", "dirsig-render", "sqt-fit", "sqt-inspect")
 _PERCENT = re.compile(r"^.*: \d+ % \(.* left\)$")
 
 
+@dataclass(frozen=True)
+class Found:
+    """Where a program is, and why that one was taken."""
+
+    path: str
+    why: str
+
+
 def find_program(name: str) -> str:
-    """The path of a program: in the folder that REMOTE_SCENES_BIN names, else on the PATH, else in `build/release/bin` of
-    the checkout that holds this package, else in that of the working folder or of one above it, which a ProgramWarning
-    names once. ProgramMissing when it is in none of them (or not in the folder that is named).
+    """The path of a program: in the folder that REMOTE_SCENES_BIN names, else of the wheel that is installed beside this
+    package, else on the PATH, else in `build/release/bin` of the checkout that holds this package, else in that of the working
+    folder or of one above it, which a ProgramWarning names once. `where_is` also says which of these it was. ProgramMissing
+    when it is in none of them (or not in the folder that is named).
     """
+    return where_is(name).path
+
+
+def where_is(name: str) -> Found:
+    """As find_program, with the reason; `python -m remote_scenes` prints it of all programs."""
     if folder := os.environ.get(FOLDER_VARIABLE):
         found = shutil.which(name, path=folder)
         if not found:
             raise ProgramMissing(f"{name} is not in {folder}, which {FOLDER_VARIABLE} names")
-        return found
+        return Found(found, f"{FOLDER_VARIABLE} names its folder")
+    if installed := _installed_folder():
+        if found := shutil.which(name, path=installed):
+            return Found(found, "it was installed with this package")
+        if name in PROGRAMS:
+            raise ProgramMissing(f"{name} is not in {installed}, where the wheels put it: pip install --force-reinstall "
+                                 f"{'remote-scenes-prep' if name == 'scene-prep' else 'remote-scenes'}, or name another folder in {FOLDER_VARIABLE}")
     if found := shutil.which(name):
-        return found
+        return Found(found, "it is on the PATH")
     if found := shutil.which(name, path=str(Path(__file__).resolve().parents[2] / "build/release/bin")):
-        return found
+        return Found(found, "it is of the checkout that holds this package")
     here = Path.cwd()
     for above in (here, *here.parents):
         if found := shutil.which(name, path=str(above / "build/release/bin")):
             _tell_found(str(above / "build/release/bin"))
-            return found
-    raise ProgramMissing(f"{name} was found nowhere: build the suite (scripts/build), put its build/release/bin on the PATH, "
-                         f"or name that folder in {FOLDER_VARIABLE}")
+            return Found(found, "it was found from the working folder upwards")
+    raise ProgramMissing(f"{name} was found nowhere: install the wheels (pip install remote-scenes), or build the suite (scripts/build) and "
+                         f"put its build/release/bin on the PATH, or name that folder in {FOLDER_VARIABLE}")
+
+
+def _installed_folder() -> str | None:
+    """Of the programs that wheels have brought; None where there are none, as in a checkout."""
+    try:
+        from remote_scenes_programs import folder  # type: ignore[import-not-found,unused-ignore]
+    except ImportError:
+        return None
+    return str(folder())
 
 
 @lru_cache(maxsize=None)
@@ -133,5 +163,5 @@ def run_program(name: str, arguments: Sequence[Union[str, os.PathLike[str]]], pr
 
 
 def version() -> str:
-    """The version of the programs that are found, as `0.1.0`."""
-    return run_program("scene-prep", ["--version"]).stdout.split()[-1]
+    """The version of the programs that are found, as `0.9.0`."""
+    return run_program("scene-prep", ["--version"]).stdout.split()[1]

@@ -29,15 +29,27 @@ suite_vendor(embree embree)
 
 # Debian's CMake files of these two name targets that its packages do not ship; their pkg-config files are right.
 pkg_check_modules(GEOGRAPHICLIB REQUIRED IMPORTED_TARGET geographiclib)
-pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(ERFA REQUIRED IMPORTED_TARGET erfa)
 suite_vendor(geographiclib PkgConfig::GEOGRAPHICLIB)
-suite_vendor(openimageio PkgConfig::OPENIMAGEIO)
 suite_vendor(erfa PkgConfig::ERFA)
 find_package(PNG REQUIRED)
 suite_vendor(png PNG::PNG)
 
-pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+# For installations that bring their libraries along (scripts/wheel): Debian's OpenImageIO pulls in 250 libraries.
+set(SUITE_OPENIMAGEIO "" CACHE PATH "folder with include and lib of an OpenImageIO in place of the system's, or empty")
+if(SUITE_OPENIMAGEIO)
+  file(GLOB OPENIMAGEIO_LIBRARIES ${SUITE_OPENIMAGEIO}/lib/libOpenImageIO*.so*)
+  if(NOT OPENIMAGEIO_LIBRARIES)
+    message(FATAL_ERROR "SUITE_OPENIMAGEIO: no libOpenImageIO*.so* is in ${SUITE_OPENIMAGEIO}/lib")
+  endif()
+  suite_vendor(openimageio ${OPENIMAGEIO_LIBRARIES})
+  target_include_directories(vendor_openimageio SYSTEM INTERFACE ${SUITE_OPENIMAGEIO}/include)
+else()
+  pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO)
+  suite_vendor(openimageio PkgConfig::OPENIMAGEIO)
+endif()
+
+pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)  # of Debian, of others
 suite_vendor(hdf5 PkgConfig::HDF5)
 
 find_library(GEOTIFF_LIBRARY geotiff REQUIRED)
@@ -47,14 +59,15 @@ suite_vendor(geotiff ${GEOTIFF_LIBRARY} PkgConfig::TIFF)
 target_include_directories(vendor_geotiff SYSTEM INTERFACE ${GEOTIFF_INCLUDE})
 
 # Optional: OpenVDB volumes. Its CMake module asks for more than is needed.
+option(SUITE_OPENVDB "volumes of OpenVDB, where it is found" ON)
 find_path(OPENVDB_INCLUDE openvdb/openvdb.h)
 find_library(OPENVDB_LIBRARY openvdb)
-if(OPENVDB_INCLUDE AND OPENVDB_LIBRARY)
+if(SUITE_OPENVDB AND OPENVDB_INCLUDE AND OPENVDB_LIBRARY)
   suite_vendor(openvdb ${OPENVDB_LIBRARY} TBB::tbb)
   target_include_directories(vendor_openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE})
   target_compile_options(vendor_openvdb INTERFACE -Wno-deprecated-declarations)
 else()
-  message(STATUS "OpenVDB was not found: .vdb files will be refused")
+  message(STATUS "without OpenVDB: .vdb files will be refused")
 endif()
 
 # Optional: models of FBX, Collada and 3DS.
@@ -78,12 +91,15 @@ else()
 endif()
 
 # Optional: runs on several machines. Of C++ only the C calls are used.
+option(SUITE_MPI "runs of several ranks, where MPI is found" ON)
 set(MPI_CXX_SKIP_MPICXX ON)
-find_package(MPI COMPONENTS CXX)
+if(SUITE_MPI)
+  find_package(MPI COMPONENTS CXX)
+endif()
 if(MPI_CXX_FOUND)
   suite_vendor(mpi MPI::MPI_CXX)
 else()
-  message(STATUS "MPI was not found: runs on several machines go by parts (--part)")
+  message(STATUS "without MPI: runs on several machines go by parts (--part)")
 endif()
 
 find_package(pugixml REQUIRED)

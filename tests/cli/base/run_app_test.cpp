@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/version.h"
 #include "support/run_command.h"
 
 using namespace suite;
@@ -68,7 +69,7 @@ TEST(RunApp, HelpAndVersionAreZeroAndDoNoWork) {
   EXPECT_EQ(r.err, "");
   r = toy("--version");
   EXPECT_EQ(r.code, 0);
-  EXPECT_EQ(r.out, "toy 0.1.0\n");
+  EXPECT_EQ(r.out, std::string("toy ") + kVersion + "\n");
 }
 
 TEST(RunApp, AClosedPipeDoesNotKillTheProgramSilently) {

@@ -111,6 +111,29 @@ class Programs(Case):
                               capture_output=True, text=True)
         self.assertEqual(done.stderr, "")
 
+    def test_programs_of_the_wheel_go_before_those_on_the_path(self):
+        """The wheels' console scripts stand on the PATH, and start a Python for each program."""
+        (self.folder / "site/remote_scenes_programs").mkdir(parents=True)
+        for place, version in (("site/remote_scenes_programs/bin", "9.1"), ("path", "9.2"), ("named", "9.3")):
+            (self.folder / place).mkdir()
+            (self.folder / place / "scene-prep").write_text(f"#!/bin/sh\necho scene-prep {version}\n")
+            (self.folder / place / "scene-prep").chmod(0o755)
+        (self.folder / "site/remote_scenes_programs/__init__.py").write_text(
+            "import pathlib\ndef folder(): return pathlib.Path(__file__).resolve().parent / 'bin'\n")
+        package = str(Path(rs.__file__).parents[1])
+        env = {k: v for k, v in os.environ.items() if k != "REMOTE_SCENES_BIN"} | {"PATH": f"{self.folder / 'path'}:/usr/bin:/bin"}
+
+        def found(code="", **more):
+            code = code or "import remote_scenes as rs; print(rs.version(), rs.where_is('scene-prep').why)"
+            return subprocess.run([sys.executable, "-W", "error", "-c", code], cwd=self.folder, env=env | more, capture_output=True, text=True)
+
+        site = {"PYTHONPATH": f"{self.folder / 'site'}:{package}"}
+        self.assertEqual(found(**site).stdout, "9.1 it was installed with this package\n")
+        self.assertEqual(found(PYTHONPATH=package).stdout, "9.2 it is on the PATH\n")
+        self.assertEqual(found(**site, REMOTE_SCENES_BIN=str(self.folder / "named")).stdout, "9.3 REMOTE_SCENES_BIN names its folder\n")
+        (self.folder / "site/remote_scenes_programs/bin/scene-prep").unlink()
+        self.assertIn("pip install --force-reinstall remote-scenes-prep", found(**site).stderr)
+
     def test_a_scene_and_a_simulation_of_one_name_have_texts_of_their_own(self):
         """prepare("s00.h5") and render("s00") wanted the same s00.yaml."""
         sensor = rs.Orthographic(name="map", columns=4, rows=4, gsd_m=1, bands=BANDS[:1], paths=1)

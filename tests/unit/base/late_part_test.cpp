@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/version.h"
 #include "support/message_of.h"
 
 namespace suite {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/files.h"
+#include "base/version.h"
 #include "formats/hdf5/h5.h"
 #include "support/grid_job.h"
 #include "support/message_of.h"
@@ -122,7 +123,7 @@ TEST(RenderState, refuses_an_older_version) {
     old.close();
   }
   EXPECT_THAT(message_of([&] { read_state_head(path, kIdentity); }),
-              testing::HasSubstr("has version '1', this program reads 6"));
+              testing::HasSubstr(std::string("is of version '1', suite ") + kVersion + " reads version 6"));
 }
 
 TEST(RenderState, refuses_what_is_no_state) {

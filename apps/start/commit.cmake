@@ -1,0 +1,16 @@
+# cmake -DSOURCE=... -DTO=file.cpp -P commit.cmake: writes the commit of the sources that programs are compiled of into TO, which stays
+# untouched while the commit is the same. Texts, tests and scripts do not count: with them alone no program changes.
+set(commit "")
+find_program(git git)
+if(git AND EXISTS ${SOURCE}/.git)
+  set(sources CMakeLists.txt apps formats libs scripts/cmake)
+  execute_process(COMMAND ${git} -C ${SOURCE} log -1 --format=%H -- ${sources} OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  string(SUBSTRING "${commit}" 0 12 commit)
+  if(commit)
+    execute_process(COMMAND ${git} -C ${SOURCE} diff --quiet HEAD -- ${sources} RESULT_VARIABLE changed ERROR_QUIET)
+    if(changed)
+      string(APPEND commit "+")
+    endif()
+  endif()
+endif()
+file(CONFIGURE OUTPUT ${TO} @ONLY CONTENT "extern \"C\" {\nextern const char suite_build_commit[];\nconst char suite_build_commit[] = \"@commit@\";\n}\n")

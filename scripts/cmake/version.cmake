@@ -1,0 +1,11 @@
+# project(VERSION) is the only source of the suite's version. What repeats it because it cannot ask says the same, or the configuration fails.
+function(suite_version_in file pattern)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${file})
+  file(STRINGS ${PROJECT_SOURCE_DIR}/${file} line REGEX "^${pattern}" LIMIT_COUNT 1)
+  string(REGEX REPLACE "^${pattern}([0-9.]*).*" "\\1" found "${line}")
+  if(NOT found STREQUAL PROJECT_VERSION)
+    message(FATAL_ERROR "${file} says version '${found}', project() in CMakeLists.txt ${PROJECT_VERSION}; 'scripts/version --set X.Y.Z' writes both")
+  endif()
+endfunction()
+suite_version_in(python/remote_scenes/_version.py "__version__ = \"")
+suite_version_in(CITATION.cff "version: ")
