@@ -4,7 +4,7 @@ Every world is screened with one run a term and the standard errors that it repo
 every sensor and band, Bonferroni over them, SCREEN. Terms have the same seed, so that paths which are the same in two of them
 have the same noise: the picture's mean is also judged by the spread of the differences of its pixels. What is below that is run again with other seeds and more paths, and judged
 by the spread between the seeds alone (a right mean with a wrong error bar is then no failure): RETEST, and at last FINAL,
-which only counts. A failure needs all three with the same sign. Since each world is judged in the end by a test of its own
+which only counts. A failure needs all three. Since each world is judged in the end by a test of its own
 at FINAL, N worlds give a false alarm with a chance of N x FINAL at most, if means of so many seeds are normal: 0.5 % for 5,000.
 """
 import math

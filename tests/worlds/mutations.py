@@ -94,7 +94,7 @@ def shown(programs, case, folder, seed, name):
     try:
         if case.exact:
             return case.exact(programs, os.path.join(folder, "term0"), seed)
-        found = judge.screen(case, evaluate.pictures_of(programs, case, folder, [seed], 2)[0])
+        found = judge.screen(case, evaluate.pictures_of(programs, case, folder, [seed], 6)[0])
         return f"{100 * found.size:+.3g} % at {found.where} (p {found.p:.0e})" if found.p < judge.FINAL else ""
     except Refused as refused:
         return f"code {refused.code}: {refused.text[:80]}"
