@@ -281,11 +281,16 @@ void find_beforehand(const std::shared_ptr<const Scene>& scene, const Simulation
   options.prepasses = facts.light_above().passes();
 }
 
+// Plug-ins come first: they may bring what is asked for.
+void mute_and_load(const RenderOptions& o) {
+  for (const std::string& plugin : o.plugins) load_plugin(plugin);
+  for (const std::string& code : o.mute) mute(diagnostic_code(code));
+}
+
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
-  for (const std::string& plugin : o.plugins) load_plugin(plugin);
-  for (const std::string& code : o.mute) mute(diagnostic_code(code));
+  mute_and_load(o);
   if (const auto code = answer(o)) return *code;
   if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
