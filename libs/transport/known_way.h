@@ -22,7 +22,8 @@ namespace suite {
 class KnownWay {
  public:
   explicit KnownWay(size_t bins) : T_(bins), S_(bins) {}
-  // What is known must not outlive a wave: which paths are in one does not depend on who runs it.
+  // What is known must not outlive a wave: which paths are in one does not depend on who runs it. It does depend on
+  // where a run was cut: `--more` has the mean of one run of all paths, with other noise.
   void forget() { known_ = false; }
   // Atmosphere::path() in the mean. Below T = 1e-13 it may be 0.
   void path(const Atmosphere& air, Vec3 from, Dir d, double way, std::span<float> T, std::span<float> S) {
