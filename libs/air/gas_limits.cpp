@@ -10,8 +10,8 @@ std::string GasLimit::text() const {
     out += strf(" transmittance is off by %.2g rms (mean %+.2g), up to %.2g;", transmittance.rms, bias,
                 transmittance.most);
   if (kelvin_down.most > 0)
-    out += strf(" brightness over a ground of 299 K is off by %.2g K rms, up to %.2g K, straight down", kelvin_down.rms,
-                kelvin_down.most);
+    out += strf(" brightness from space over a ground of 299 K is off by %.2g K rms, up to %.2g K, straight down",
+                kelvin_down.rms, kelvin_down.most);
   if (kelvin_slanted.most > 0)
     out += strf(", by %.2g K rms, up to %.2g K, on slanted paths", kelvin_slanted.rms, kelvin_slanted.most);
   if (out.back() == ';') out.pop_back();

@@ -1,6 +1,7 @@
 // Materials and the maps that vary them: names become numbers; what a curve, a class or a map cannot be is filed.
 #include "optics/stored_range.h"
 #include "scene/baker.h"
+#include "spectral/wavelength.h"
 
 namespace suite {
 
@@ -16,6 +17,9 @@ uint32_t Baker::material_id(const Reference& ref) {
 
 void Baker::check_coverage(const DraftMaterial& m) {
   const auto check = [&](const std::string& what, const Curve& curve) {
+    if (!curve.is_constant() && curve.low_um() > kLongestWave)
+      add("SP110", m.where,
+          strf("material '%s': %s is given from %s", m.material.id.c_str(), what.c_str(), curve.range_text().c_str()));
     for (const SpectralWindow& w : draft_.windows)
       if (!curve.covers(w.low_um, w.high_um))
         add("SP104", m.where,

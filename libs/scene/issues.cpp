@@ -27,6 +27,8 @@ constexpr Row kRows[] = {
     {"SP107", warning, "a temperature is that of deep space", "temperatures are in kelvin"},
     {"SP108", info, "what a model of the sea's surface rests on", ""},
     {"SP109", warning, "a curve has marks of deleted channels", ""},
+    {"SP110", warning, "all wavelengths of a curve are beyond 100 um, as if they were nanometres",
+     "name the unit in the header of its file: wavelength_nm, or nm in a comment"},
     {"SP201", error, "a face names something that is not there",
      "indices count from 1, or from the end when negative; 0 is nothing"},
     {"SP202", warning, "a face has fewer than three corners and is left out", "give at least three corners"},

@@ -38,6 +38,14 @@ std::string when(const SourceTime* date, double moment) {
               : std::string();
 }
 
+// The first few of many names.
+std::string named(const std::vector<std::string>& names) {
+  constexpr size_t most = 5;
+  std::string text;
+  for (size_t i = 0; i < std::min(names.size(), most); ++i) text += (i ? ", " : "") + names[i];
+  return names.size() > most ? text + strf(" and %zu more", names.size() - most) : text;
+}
+
 // Sun and Moon have set whenever the sensor looks, and nothing else shines.
 std::optional<SensorDiagnostic> night(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
   const bool others = std::any_of(written.lights.begin(), written.lights.end(), [](auto& l) { return !l->disk(); });
@@ -56,6 +64,33 @@ std::optional<SensorDiagnostic> night(const SourceSpecs& written, const Scene& s
       strf("the sun is %.1f degrees below the horizon%s and nothing else shines: the picture will be black",
            -std::asin(std::max(-1.0, highest)) / kDegree, when(written.sun()->date(), moment).c_str()),
       "give a time of day or a direction with the sun up, or a `sky`, a `moon` or `lamps`"};
+}
+
+// Under air the sun lights what a sensor sees from below the horizon, ever less.
+std::optional<SensorDiagnostic> twilight(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
+  constexpr double kDusk = -6 * kDegree, kThermal = 3;  // the end of civil twilight; um
+  const bool others = std::any_of(written.lights.begin(), written.lights.end(), [](auto& l) { return !l->disk(); });
+  if (!written.sun() || others || !written.has_air()) return std::nullopt;
+  std::vector<std::string> dark;
+  for (size_t s = 0; s < sensor.states().size(); ++s)
+    for (const Band& b : sensor.bands(s))
+      if (b.center_um < kThermal) dark.push_back("'" + b.name + "'");
+  if (dark.empty()) return std::nullopt;
+  SourcesInTime sources(written, scene);
+  double highest = -kPi, moment = 0;
+  for (const Capture* c : some_captures(sensor, 64)) {
+    const SourceSpecs& now = sources.at(moment_of(*c));
+    for (const LightSpecPtr& light : now.lights) {
+      const double rise = std::asin(std::clamp(normalized(light->disk()->direction).z, -1.0, 1.0));
+      if (rise > highest) highest = rise, moment = moment_of(*c);
+    }
+  }
+  if (highest > kDusk) return std::nullopt;
+  return SensorDiagnostic{
+      Dr::sun_below_horizon, sensor.name(),
+      strf("the sun is %.1f degrees below the horizon%s and nothing else shines: band %s gets what is left of twilight",
+           -highest / kDegree, when(written.sun()->date(), moment).c_str(), named(dark).c_str()),
+      "give a time of day or a direction with the sun up, or a `moon` or `lamps`"};
 }
 
 // A flat plane without end is under the air of a round Earth, too: it shades all of it from a Sun that has set.
@@ -77,14 +112,6 @@ std::optional<SensorDiagnostic> shaded_twilight(const SourceSpecs& written, cons
         "give the plane a size; `earth` goes on around it"};
   }
   return std::nullopt;
-}
-
-// The first few of many names.
-std::string named(const std::vector<std::string>& names) {
-  constexpr size_t most = 5;
-  std::string text;
-  for (size_t i = 0; i < std::min(names.size(), most); ++i) text += (i ? ", " : "") + names[i];
-  return names.size() > most ? text + strf(" and %zu more", names.size() - most) : text;
 }
 
 // Bands in which no source sends anything, of a scene that does not glow itself.
@@ -182,6 +209,7 @@ std::vector<SensorDiagnostic> diagnose_lights(const SourceSpecs& written, const 
   for (const auto& sensor : sensors) {
     std::optional<SensorDiagnostic> found = night(written, scene, *sensor);
     if (!found) found = shaded_twilight(written, scene, *sensor);
+    if (!found) found = twilight(written, scene, *sensor);
     if (!found) found = dark_bands(first, scene, *sensor);
     if (!found) found = unknown_bands(scene, *sensor);
     if (found) all.push_back(*found);

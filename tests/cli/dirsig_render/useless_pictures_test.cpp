@@ -129,6 +129,9 @@ TEST_F(UselessPictures, TwilightOverAnEndlessPlane) {
       {"3.0 degrees below the horizon", "the endless plane 'plane' shades all air", "give the plane a size", "[DR102]"},
       true, "endless");
   EXPECT_EQ(warnings(said(dusk)), 0u);
+  std::string night = dusk;
+  expect_one(night.replace(night.find("zenith_deg: 93"), 14, "zenith_deg: 97"),
+             {"7.0 degrees below the horizon", "band 'pan' gets what is left of twilight", "[DR101]"}, true);
 }
 
 TEST_F(UselessPictures, DegreesForMetres) {

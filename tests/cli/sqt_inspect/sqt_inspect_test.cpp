@@ -1,4 +1,5 @@
 // sqt-inspect as a user meets it: every output, and bad input with its exit code and message.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,6 +99,9 @@ TEST_F(SqtInspect, ComparisonFindsTheFittersErrorByItself) {
 
 TEST_F(SqtInspect, ValuesSlicesAndSamples) {
   const CommandResult e = run_command(kInspect + ward_ + " --eval 30,0,50,180,0.55");
+  const CommandResult beyond = run_command(kInspect + ward_ + " --eval 30,0,50,180,10");
+  EXPECT_EQ(beyond.code, 0) << beyond.err;
+  EXPECT_THAT(beyond.err, testing::HasSubstr("at 10 um the value at its nearer end is printed"));
   ASSERT_EQ(e.code, 0) << e.err;
   const auto model = model_function("ward:specular=0.3,diffuse=0.2,roughness=0.2");
   double f = 0;

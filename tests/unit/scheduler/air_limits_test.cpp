@@ -166,7 +166,7 @@ TEST(AirLimits, BandsWhereGasesAreLessSure) {
   air.gases = shared_builtin_gases();
   const auto at = [&](double um) { return Told{.half_width = 3e5, .um = um, .air = air}.said(); };
   EXPECT_THAT(at(3.8), Contains(AllOf(HasSubstr("gases: from 3.4 to 4.15 um transmittance is off by 0.067 rms (mean "
-                                                "-0.056), up to 0.18; brightness over a ground of 299 K"),
+                                                "-0.056), up to 0.18; brightness from space over a ground of 299 K"),
                                       HasSubstr("bands there: 'b' of 'rays' [DR401]"))));
   EXPECT_THAT(at(0.69), IsEmpty());
   EXPECT_THAT(at(12.6), Contains(HasSubstr("by 4.1 K rms, up to 12 K, on slanted paths")));
