@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "base/error.h"
 
@@ -138,7 +140,7 @@ class Levels {
 
 double square(double x) { return x * x; }
 
-// Of one face through three lengths of steps, by moment of the whole: what the shortest lack.
+// Of one face through three lengths of steps, by moment of the whole: what the shortest lack. long_steps may be null.
 void errors_of(const double* short_steps, const double* middle, const double* long_steps,
                const std::vector<size_t>& twice, const std::vector<size_t>& fourfold, size_t moments, float* out) {
   double first = 0, second = 0;
@@ -148,15 +150,26 @@ void errors_of(const double* short_steps, const double* middle, const double* lo
     const size_t part = std::min<size_t>(kHeatParts - 1, twice[k] * kHeatParts / moments);
     first += off / static_cast<double>(twice.size()), sum[part] += off, count[part] += 1;
   }
-  for (size_t k = 0; k < fourfold.size(); ++k) {
+  for (size_t k = 0; long_steps && k < fourfold.size(); ++k) {
     const auto at = std::ranges::lower_bound(twice, fourfold[k]) - twice.begin();
     second += square(long_steps[k] - middle[at]) / static_cast<double>(fourfold.size());
   }
-  const double gain = first > 0 ? std::clamp(std::sqrt(second / first), std::sqrt(2.0), 4.0) : 4;
+  const double gain = !long_steps ? std::sqrt(2.0)
+                      : first > 0 ? std::clamp(std::sqrt(second / first), std::sqrt(2.0), 4.0)
+                                  : 4;
   double before = std::sqrt(first);
   for (size_t p = 0; p < kHeatParts; ++p) {
     if (count[p] > 0) before = std::sqrt(sum[p] / count[p]);
     out[p] = static_cast<float>(before / (gain - 1));
+  }
+}
+
+// Nothing where steps of that length find no temperatures, as of thin layers beside strong sources.
+std::optional<std::vector<double>> found(const Levels& levels, const std::vector<size_t>& kept) {
+  try {
+    return levels.solve(kept);
+  } catch (const Error&) {
+    return std::nullopt;
   }
 }
 
@@ -170,10 +183,16 @@ std::vector<float> step_errors(const SolvedSurfaces& solved, const StepErrorOpti
   const std::vector<size_t> once = longer(moments, 1), twice = longer(moments, 2), fourfold = longer(moments, 4);
   const auto solve = [&](const Sampled& sample) {
     const Levels levels(solved, sample, options.tolerance);
-    const std::vector<double> a = levels.solve(once), b = levels.solve(twice), c = levels.solve(fourfold);
-    for (size_t f = 0; f < sample.face.size(); ++f)
-      errors_of(&a[f * once.size()], &b[f * twice.size()], &c[f * fourfold.size()], twice, fourfold, moments,
-                &out[sample.face[f] * kHeatParts]);
+    const std::vector<double> a = levels.solve(once);
+    const auto b = found(levels, twice), c = found(levels, fourfold);
+    for (size_t f = 0; f < sample.face.size(); ++f) {
+      float* const to = &out[sample.face[f] * kHeatParts];
+      if (!b)
+        std::fill_n(to, kHeatParts, std::numeric_limits<float>::infinity());
+      else
+        errors_of(&a[f * once.size()], &(*b)[f * twice.size()], c ? &(*c)[f * fourfold.size()] : nullptr, twice,
+                  fourfold, moments, to);
+    }
   };
   std::vector<bool> touches(faces, false);
   for (const auto& c : solved.neighbours.contacts) touches[c.a] = touches[c.b] = true;

@@ -16,7 +16,8 @@ struct StepErrorOptions {
 // jumps) and two (the scheme), and that the rest of the series (L. F. Richardson, Phil. Trans. R. Soc. A 210, 1911).
 // Longer steps have the loads' means by the hats of straight lines. Assumes: what lies in between moments is as the
 // loads say; a span that does not repeat is followed as if it did. At least kHeatParts moments; fewer than nine, or
-// elements without heat capacity, which have no steps: 0.
+// elements without heat capacity, which have no steps: 0. Where steps of four times the length find no temperatures the
+// order counts as a half; where those of twice the length find none, the error is not known: infinite.
 std::vector<float> step_errors(const SolvedSurfaces& solved, const StepErrorOptions& options = {});
 
 }  // namespace suite
