@@ -87,6 +87,19 @@ double span_of_weather(const dirsig::WeatherAsked& asked) {
   return weather.table().rows.back().end - weather.table().rows.front().end;
 }
 
+// A text that someone has edited is not written over.
+void keep_edited(std::span<const std::pair<std::string, std::string>> texts) {
+  for (const auto& [name, text] : texts) {
+    if (!file_exists(name)) continue;
+    const RandomAccessFile file(name);
+    std::string there(file.size(), '\0');
+    file.read_at(0, std::as_writable_bytes(std::span(there)));
+    if (there != text)
+      throw Error(Where{name, 0, 0, {}, -1}, "is there with other content than --convert writes",
+                  "remove it, or name another folder");
+  }
+}
+
 // Whether an import may go on: nothing was left out that must not be.
 bool tell(const dirsig::Ledger& ledger, bool strict) {
   const auto counts = ledger.counts();
@@ -183,10 +196,12 @@ int convert_simulation(const RenderOptions& o) {
   std::vector<std::string> names;
   for (const auto& [name, text] : texts) names.push_back(name);
   check_outputs(names);
+  keep_edited(texts);
   make_folder(o.convert);
-  for (const auto& [name, text] : texts) write_file(name, text);
+  for (const auto& [name, text] : texts)
+    if (!file_exists(name)) write_file(name, text);  // those that are there are the same
   for (const std::string& place : taken)
-    note("prepare " + std::filesystem::path(place).replace_extension("yaml").string() + ": scene-prep ... -o " + place);
+    note("scene-prep " + std::filesystem::path(place).replace_extension("yaml").string() + " -o " + place);
   note("wrote " + in_folder(o.convert, "simulation.yaml") +
        " and what became of every line, simulation_import.txt beside it");
   return tell(ledger, o.strict) ? 0 : 1;
