@@ -10,6 +10,7 @@
 #include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/kept_texts.h"
 #include "base/outputs.h"
 #include "formats/dirsig/dirsig.h"
 #include "formats/tape5/tape5.h"
@@ -85,19 +86,6 @@ double span_of_weather(const dirsig::WeatherAsked& asked) {
   options.date = parse_iso8601(asked.date);
   const Weather weather = read_weather(asked.path, options);
   return weather.table().rows.back().end - weather.table().rows.front().end;
-}
-
-// A text that someone has edited is not written over.
-void keep_edited(std::span<const std::pair<std::string, std::string>> texts) {
-  for (const auto& [name, text] : texts) {
-    if (!file_exists(name)) continue;
-    const RandomAccessFile file(name);
-    std::string there(file.size(), '\0');
-    file.read_at(0, std::as_writable_bytes(std::span(there)));
-    if (there != text)
-      throw Error(Where{name, 0, 0, {}, -1}, "is there with other content than --convert writes",
-                  "remove it, or name another folder");
-  }
 }
 
 // Whether an import may go on: nothing was left out that must not be.
@@ -178,28 +166,26 @@ int convert_simulation(const RenderOptions& o) {
   note_input(o.simulation);
   dirsig::Import import(o.search, o.convert);
   std::vector<std::string> taken;
-  std::vector<std::pair<std::string, std::string>> texts;
+  std::vector<NamedText> texts;
   dirsig::SimulationHelp help;
   help.deck = air_of_deck;
   help.weather = span_of_weather;
   help.prepared = [&](const std::string& scene, const dirsig::SceneMade& made) {
     const std::string place = place_for(taken, o.convert, scene);
-    texts.emplace_back(std::filesystem::path(place).replace_extension("yaml").string(), made.text.yaml);
+    texts.push_back({std::filesystem::path(place).replace_extension("yaml").string(), made.text.yaml});
     return place;
   };
   const dirsig::MadeText made = dirsig::simulation_of(import, o.simulation, help);
   dirsig::Ledger& ledger = import.ledger();
   ledger.close();
-  texts.emplace_back(in_folder(o.convert, "simulation.yaml"), made.yaml);
-  texts.emplace_back(in_folder(o.convert, "simulation_import.json"), ledger.json());
-  texts.emplace_back(in_folder(o.convert, "simulation_import.txt"), ledger.text());
+  texts.push_back({in_folder(o.convert, "simulation.yaml"), made.yaml});
+  texts.push_back({in_folder(o.convert, "simulation_import.json"), ledger.json()});
+  texts.push_back({in_folder(o.convert, "simulation_import.txt"), ledger.text()});
   std::vector<std::string> names;
-  for (const auto& [name, text] : texts) names.push_back(name);
+  for (const NamedText& t : texts) names.push_back(t.file);
   check_outputs(names);
-  keep_edited(texts);
   make_folder(o.convert);
-  for (const auto& [name, text] : texts)
-    if (!file_exists(name)) write_file(name, text);  // those that are there are the same
+  write_kept_texts(texts);
   for (const std::string& place : taken)
     note("scene-prep " + std::filesystem::path(place).replace_extension("yaml").string() + " -o " + place);
   note("wrote " + in_folder(o.convert, "simulation.yaml") +

@@ -91,6 +91,16 @@ TEST_F(Dirsig, ConvertKeepsTextsThatWereEdited) {
   }
 }
 
+TEST_F(Dirsig, ConvertKeepsTextsOfScenesThatWereEdited) {
+  ASSERT_EQ(run("scene-prep plane.scene --convert scene -q").code, 0);
+  EXPECT_EQ(run("scene-prep plane.scene --convert scene -q").code, 0) << "the same texts";
+  write_file(*folder_ / "scene/plane.yaml", std::string_view("scene: 1\n"));
+  const CommandResult again = run("scene-prep plane.scene --convert scene -q");
+  EXPECT_EQ(again.code, 1);
+  EXPECT_NE(again.err.find("scene/plane.yaml: error: is there with other content"), std::string::npos) << again.err;
+  EXPECT_EQ(read_text(*folder_ / "scene/plane.yaml"), "scene: 1\n");
+}
+
 TEST_F(Dirsig, ThermFollowsFromTheWeatherOfTheSimulation) {
   const CommandResult r = run("dirsig-render warm.sim -o warm --set heat.elements=200 --set heat.paths=32");
   ASSERT_EQ(r.code, 0) << r.err;
