@@ -212,7 +212,7 @@ std::vector<NamedCurve> ResponseFile::read() const {
     fail(strf("responses of %zu x %zu for wavelengths of %zu x %zu", t.rows, t.columns, waves.rows, waves.columns),
          "responses with the dimensions (band, wavelength), at most 4096 bands");
   if (by_row && by_column)
-    fail(strf("as many bands as wavelengths, %zu: which dimension is the bands' is unknown", length),
+    fail(strf("as many bands as wavelengths, %zu: which dimension is that of the bands is unknown", length),
          "write a table: 'wavelength_nm,B1,B2,...'");
   const std::vector<std::string> names = band_names(count);
   for (size_t b = 0; b < count; ++b) {

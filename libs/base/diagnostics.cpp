@@ -1,7 +1,6 @@
 #include "base/diagnostics.h"
 
 #include <algorithm>
-#include <array>
 #include <mutex>
 #include <set>
 
@@ -13,9 +12,9 @@ namespace {
 
 constexpr Severity kWarning = Severity::warning, kInfo = Severity::info;
 
-constexpr std::array kKinds = std::to_array<DiagnosticKind>({
+constexpr DiagnosticKind kKinds[] = {
     // Sensors and lights.
-    {Dr::sun_below_horizon, kWarning, "the sun is below the horizon in every capture and nothing else shines",
+    {Dr::sun_below_horizon, kWarning, "the sun is below the horizon (under air: by 6 degrees) in every capture and nothing else shines",
      "choose a time or direction with the sun up, or add a sky, a moon or lamps"},
     {Dr::no_twilight, kWarning, "an endless plane shades all air of a round Earth from a sun below the horizon",
      "give the plane a size; `earth` continues around it"},
@@ -124,7 +123,7 @@ constexpr std::array kKinds = std::to_array<DiagnosticKind>({
     {Dr::tile_beyond_limit, kWarning, "a tile of the scene alone takes more than the memory limit", "raise the limit"},
     {Dr::stopped, kWarning, "a signal stopped the run in good order", "resume it where a state is kept"},
     {Dr::rank_options, kWarning, "a rank was started with options that cannot be", "start all ranks alike"},
-});
+};
 
 struct Kept {
   std::mutex mutex;
@@ -142,7 +141,7 @@ std::span<const DiagnosticKind> diagnostic_kinds() { return kKinds; }
 
 const DiagnosticKind& diagnostic_kind(Dr code) {
   const auto found = std::ranges::find(kKinds, code, &DiagnosticKind::code);
-  if (found == kKinds.end()) throw Bug("unlisted diagnostic " + code_text(code));
+  if (found == std::end(kKinds)) throw Bug("unlisted diagnostic " + code_text(code));
   return *found;
 }
 
