@@ -14,8 +14,7 @@ constexpr Severity kWarning = Severity::warning, kInfo = Severity::info;
 
 constexpr DiagnosticKind kKinds[] = {
     // Sensors and lights.
-    {Dr::sun_below_horizon, kWarning,
-     "the sun is below the horizon (under air: by 6 degrees) in every capture and nothing else shines",
+    {Dr::sun_below_horizon, kWarning, "the sun is below the horizon (under air: by 6 degrees) in every capture and nothing else shines",
      "choose a time or direction with the sun up, or add a sky, a moon or lamps"},
     {Dr::no_twilight, kWarning, "an endless plane shades all air of a round Earth from a sun below the horizon",
      "give the plane a size; `earth` continues around it"},
