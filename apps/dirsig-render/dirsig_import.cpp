@@ -10,6 +10,7 @@
 #include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/kept_texts.h"
 #include "base/outputs.h"
 #include "formats/dirsig/dirsig.h"
 #include "formats/tape5/tape5.h"
@@ -165,28 +166,28 @@ int convert_simulation(const RenderOptions& o) {
   note_input(o.simulation);
   dirsig::Import import(o.search, o.convert);
   std::vector<std::string> taken;
-  std::vector<std::pair<std::string, std::string>> texts;
+  std::vector<NamedText> texts;
   dirsig::SimulationHelp help;
   help.deck = air_of_deck;
   help.weather = span_of_weather;
   help.prepared = [&](const std::string& scene, const dirsig::SceneMade& made) {
     const std::string place = place_for(taken, o.convert, scene);
-    texts.emplace_back(std::filesystem::path(place).replace_extension("yaml").string(), made.text.yaml);
+    texts.push_back({std::filesystem::path(place).replace_extension("yaml").string(), made.text.yaml});
     return place;
   };
   const dirsig::MadeText made = dirsig::simulation_of(import, o.simulation, help);
   dirsig::Ledger& ledger = import.ledger();
   ledger.close();
-  texts.emplace_back(in_folder(o.convert, "simulation.yaml"), made.yaml);
-  texts.emplace_back(in_folder(o.convert, "simulation_import.json"), ledger.json());
-  texts.emplace_back(in_folder(o.convert, "simulation_import.txt"), ledger.text());
+  texts.push_back({in_folder(o.convert, "simulation.yaml"), made.yaml});
+  texts.push_back({in_folder(o.convert, "simulation_import.json"), ledger.json()});
+  texts.push_back({in_folder(o.convert, "simulation_import.txt"), ledger.text()});
   std::vector<std::string> names;
-  for (const auto& [name, text] : texts) names.push_back(name);
+  for (const NamedText& t : texts) names.push_back(t.file);
   check_outputs(names);
   make_folder(o.convert);
-  for (const auto& [name, text] : texts) write_file(name, text);
+  write_kept_texts(texts);
   for (const std::string& place : taken)
-    note("prepare " + std::filesystem::path(place).replace_extension("yaml").string() + ": scene-prep ... -o " + place);
+    note("scene-prep " + std::filesystem::path(place).replace_extension("yaml").string() + " -o " + place);
   note("wrote " + in_folder(o.convert, "simulation.yaml") +
        " and what became of every line, simulation_import.txt beside it");
   return tell(ledger, o.strict) ? 0 : 1;

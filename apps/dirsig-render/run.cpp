@@ -54,8 +54,16 @@ int print(const std::string& list) {
   return 0;
 }
 
-// Features of the renderer, and those of what is loaded.
+// The row of a diagnostic, by its code.
+std::string explain_code(const std::string& text) {
+  const Dr code = diagnostic_code(text);
+  const DiagnosticKind& kind = diagnostic_kind(code);
+  return strf("%s: %s: %s\n  %s\n", code_text(code).c_str(), to_text(kind.severity), kind.condition, kind.cure);
+}
+
+// Features of the renderer, those of what is loaded, and diagnostics.
 std::string explain(const std::string& feature) {
+  if (feature.starts_with("DR")) return explain_code(feature);
   if (const auto text = explain_use(feature)) return *text;
   try {
     return explain_feature(feature);

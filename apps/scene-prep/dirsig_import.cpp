@@ -2,6 +2,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/kept_texts.h"
 #include "base/outputs.h"
 #include "base/run_app.h"
 #include "formats/dirsig/dirsig.h"
@@ -52,9 +53,8 @@ bool convert(const std::string& path, const ImportOptions& options, const std::s
   const std::string text = stem + ".yaml", json = stem + "_import.json", account = stem + "_import.txt";
   check_outputs({text, json, account});
   make_folder(folder);
-  write_file(text, made.text.yaml);
-  write_file(json, ledger.json());
-  write_file(account, ledger.text());
+  const NamedText texts[] = {{text, made.text.yaml}, {json, ledger.json()}, {account, ledger.text()}};
+  write_kept_texts(texts);
   note("wrote " + text + " and what became of every line, " + account);
   const auto counts = ledger.counts();
   return counts[static_cast<size_t>(Fate::unsupported)] == 0 &&

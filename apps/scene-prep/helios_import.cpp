@@ -5,6 +5,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/kept_texts.h"
 #include "base/outputs.h"
 #include "base/run_app.h"
 #include "formats/helios/helios.h"
@@ -56,7 +57,8 @@ bool convert(const std::string& path, const ImportOptions& options, const std::s
   const std::string text = (fs::path(folder) / fs::path(path).stem()).string() + ".yaml";
   check_outputs({text});
   make_folder(folder);
-  write_file(text, made.yaml);
+  const NamedText made_text[] = {{text, made.yaml}};
+  write_kept_texts(made_text);
   std::fputs(report.text().c_str(), stdout);
   note("wrote " + text);
   return report.count("SP705") == 0;

@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/kept_texts.h"
 #include "base/outputs.h"
 #include "base/run_app.h"
 #include "base/yaml_text.h"
@@ -176,7 +177,8 @@ bool convert(const std::string& path, const ImportOptions& options, const std::s
   const Made made = text_of(path, file, kind_of(path, head), options);
   check_outputs({text});
   make_folder(folder);
-  write_file(text, made.yaml);
+  const NamedText made_text[] = {{text, made.yaml}};
+  write_kept_texts(made_text);
   note("wrote " + text + ": give its materials spectra");
   return true;
 }

@@ -36,6 +36,18 @@ class Setting {
   }
   static std::string first_step(std::string_view rest) { return std::string(rest.substr(0, rest.find('.'))); }
 
+  // A name that is near, else how a map that is not there yet is written as one value.
+  std::string new_map_hint(size_t begin, std::span<const std::string> known) const {
+    const std::string_view rest = path_.substr(begin);
+    const std::string step = first_step(rest);
+    if (rest.size() <= step.size() + 1 || !nearest_name(step, known).empty()) return name_hint(step, known);
+    std::string inner(rest.substr(step.size() + 1)), ends = "}";
+    for (size_t dot = inner.find('.'); dot != std::string::npos; dot = inner.find('.', dot + 3), ends += '}')
+      inner.replace(dot, 1, ": {");
+    return "write --set '" + std::string(path_.substr(0, begin)) + step + "={" + inner + ": " +
+           text_.substr(path_.size() + 1) + ends + "'";
+  }
+
   const Node* put_key(Node& map, size_t begin, const Node* value) {
     const std::string_view rest = path_.substr(begin);
     Node::Entry* longest = nullptr;
@@ -48,7 +60,7 @@ class Setting {
       longest->value = put(longest->value, begin + longest->key.size() + 1, value);
     } else if (value) {
       if (!longest && rest.find('.') != std::string_view::npos)
-        throw fault(begin, "there is no '" + first_step(rest) + "' here", name_hint(first_step(rest), known));
+        throw fault(begin, "there is no '" + first_step(rest) + "' here", new_map_hint(begin, known));
       if (!longest) {
         map.index[std::string(rest)] = map.entries.size();
         longest = &map.entries.emplace_back();

@@ -13,6 +13,13 @@ namespace {
 std::atomic<bool> g_quiet{false}, g_silent{false};
 
 bool heard() { return !g_quiet && !g_silent; }
+
+// "1 path", "960 paths", "2 spectra", "100 %".
+std::string counted(double count, const std::string& unit) {
+  std::string text = human_count(count) + " " + unit;
+  if (count == 1 || unit == "%") return text;
+  return unit.ends_with("um") ? text.replace(text.size() - 2, 2, "a") : text + "s";
+}
 }  // namespace
 
 void Progress::set_quiet(bool quiet) { g_quiet = quiet; }
@@ -50,9 +57,9 @@ void Progress::draw(bool last) {
   const double done = done_, share = total_ > 0 ? std::min(1.0, done / total_) : 1, seconds = this->seconds();
   const double rate = seconds > 0 ? done / seconds : 0;
   if (last) {
-    std::fprintf(stderr, "%s%s: %s %s in %s (%s %s/s)%s\n", terminal_ ? "\r" : "", label_.c_str(),
-                 human_count(done).c_str(), unit_.c_str(), human_seconds(seconds).c_str(), human_count(rate).c_str(),
-                 unit_.c_str(), terminal_ ? "\033[K" : "");
+    std::fprintf(stderr, "%s%s: %s in %s (%s %s/s)%s\n", terminal_ ? "\r" : "", label_.c_str(),
+                 counted(done, unit_).c_str(), human_seconds(seconds).c_str(), human_count(rate).c_str(), unit_.c_str(),
+                 terminal_ ? "\033[K" : "");
     return;
   }
   const std::string left = share > 0 ? human_seconds(seconds * (1 - share) / share) : "?";

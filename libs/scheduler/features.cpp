@@ -17,8 +17,8 @@ struct Feature {
 std::vector<Feature> all_features() {
   std::vector<Feature> all{
       {"media",
-       "Participating media: fog, clouds, water, plumes. Without any, paths go straight from surface to surface; one "
-       "null pointer is asked for a stage of a block of paths."},
+       "Participating media: fog, clouds, water, plumes. Without any, paths go straight from surface to surface, and "
+       "it costs nothing."},
       {"motion", "Things that move. Without any, all time windows share one set of acceleration structures."},
       {"schedules",
        "Things that come, go or change their material at times. Windows through which they do not share what "
@@ -29,7 +29,7 @@ std::vector<Feature> all_features() {
       {"class maps", "Rasters that choose the material of a place."},
       {"property maps",
        "Rasters that vary a material: mixtures, textures, curves, cubes, temperatures, bumps, normals, holes. A "
-       "material without any costs a null pointer; one with some is put together at every hit."},
+       "material without any costs nothing; one with some is put together at every hit."},
       {"emission",
        "Thermal emission. The blackbody radiance of a material is tabulated only when its temperature was loaded, "
        "which it is when it shows in some spectral window (--explain temperatures)."}};
@@ -40,12 +40,11 @@ std::vector<Feature> all_features() {
                           "Without, or without air, kernels are made that know nothing of it."},
                          {"refracted light",
                           "Sun, moon and lamps asked for through smooth interfaces (water, panes, lenses) from every "
-                          "node. Where no material passes light smoothly nothing of it is made; one null pointer is "
-                          "asked at a node."},
+                          "node. Where no material passes light smoothly nothing of it is made, and it costs nothing."},
                          {"gloss guide",
                           "Photons of sun, moon and lamps that glossy surfaces throw on others, and continuations of "
                           "paths that are drawn to where they come from. Where no material has a narrow lobe, or none "
-                          "of the light lands, no photon is kept, and one null pointer is asked at a node."},
+                          "of the light lands, no photon is kept, and paths cost what they did without."},
                          {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
                          {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
                          {"bands", "Spectral bins are carried only where a band of the state responds."}});
@@ -93,7 +92,8 @@ FeatureUse refraction(const Scene& scene, const SourceSpecs& sources, const Pipe
                         : !options.explicit_sources       ? "lights are not asked"
                         : !options.refracted_sources      ? "`light_through_refraction: false`"
                                                           : nullptr;
-  return {"refracted light", !missing, missing ? missing : strf("%zu smooth materials", static_cast<size_t>(smooth))};
+  return {"refracted light", !missing,
+          missing ? missing : strf("%zu smooth material%s", static_cast<size_t>(smooth), smooth == 1 ? "" : "s")};
 }
 
 // Whether it is glossy enough to matter photons find out, which are sent when a state is begun.

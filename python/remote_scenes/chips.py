@@ -16,36 +16,36 @@ from typing import Any, Literal, Mapping, Sequence, Union
 import numpy as np
 import xarray as xr
 
+from .results import Result
 from .tree import FileName
 
 Mask = np.ndarray[Any, np.dtype[np.bool_]]
 Pixels = np.ndarray[Any, Any]
 
 
-def write_chips(datasets: Union[xr.Dataset, Mapping[str, xr.Dataset]], folder: FileName, *, size: int = 256,
-                stride: int | None = None, category: Literal["tag", "material"] = "tag", names: Sequence[str] | None = None,
-                bands: Sequence[str] | None = None, stretch: tuple[float, float] = (1, 99),
+def write_chips(datasets: Union[xr.Dataset, Mapping[str, xr.Dataset], Result], folder: FileName, *, size: int = 256,
+                stride: int | None = None, category: Literal["tag", "material"] = "tag", names: Union[str, Sequence[str], None] = None,
+                bands: Union[str, Sequence[str], None] = None, stretch: tuple[float, float] = (1, 99),
                 value_range: tuple[float, float] | None = None, segmentation: Literal["rle", "polygon"] = "rle",
                 min_area: int = 1, keep_empty: bool = True, cubes: bool = False) -> dict[str, Any]:
     """Writes chips of images as `folder/images/*.png` and their labels as `folder/annotations.json`; returns the labels.
 
-    datasets: of Result, one or by name. Objects are the instances of the truth (a sensor with `truth: [tag, instance, ...]`
+    datasets: one of a Result, several by name, or a Result, of which all images are taken. Objects are the instances of the truth (a sensor with `truth: [tag, instance, ...]`
     or `[material, instance, ...]`): a pixel belongs to the instance, tag and material that most of its samples met first.
     By tag, a group with a tag is one object (`truth_object`); `instance` of a label is then its first one.
     category: what names them; untagged ones are no objects. names: the categories, in the order of their numbers from 1;
-    else those that occur in the scene, which are the same for all images of one scene.
+    else those that occur in the scene, which are the same for all images of one scene; others than these are left out.
     size, stride: pixels; chips at the right and lower edge are moved inwards so that all are whole, smaller images are one
-    chip. bands: one or three names; else the header's default bands. stretch: percent of the pixels of an image that are
+    chip. bands: a name, or one or three in a list; else the header's default bands. stretch: percent of the pixels of an image that are
     black in one of the bands, and not white in any; value_range: instead, in the unit of the image. segmentation: run
     lengths, or polygons along the edges of pixels (objects with holes keep run lengths: polygons of COCO have none).
     min_area: pixels in a chip below which there is no label. keep_empty: chips without objects, too. cubes: beside every
     PNG an .npy with all bands as stored, (band, y, x).
-    ValueError: no such truth or band, sizes below 1.
+    ValueError: no such truth, band, category or kind of segmentation, sizes below 1, a range without width.
     """
-    several = {"image": datasets} if isinstance(datasets, xr.Dataset) else dict(datasets)
-    if size < 1 or (stride is not None and stride < 1):
-        raise ValueError(f"chips of {size} pixels every {stride} cannot be cut")
-    categories = list(names) if names is not None else _names_of(several, category)
+    several = _several(datasets)
+    _check_choices(size, stride, category, segmentation, value_range)
+    categories = _categories(several, category, names)
     out = Path(folder)
     (out / "images").mkdir(parents=True, exist_ok=True)
     labels: dict[str, Any] = {
@@ -78,6 +78,36 @@ def write_chips(datasets: Union[xr.Dataset, Mapping[str, xr.Dataset]], folder: F
     temporary.write_text(json.dumps(labels), encoding="utf-8")
     os.replace(temporary, out / "annotations.json")
     return labels
+
+
+def _several(datasets: Union[xr.Dataset, Mapping[str, xr.Dataset], Result]) -> dict[str, xr.Dataset]:
+    if isinstance(datasets, xr.Dataset):
+        return {"image": datasets}
+    return {name: datasets[name] for name in datasets} if isinstance(datasets, Result) else dict(datasets)
+
+
+def _check_choices(size: int, stride: int | None, category: str, segmentation: str,
+                   value_range: tuple[float, float] | None) -> None:
+    for name, value in (("size", size), ("stride", stride)):
+        if value is not None and value < 1:
+            raise ValueError(f"{name} must be at least 1, not {value}")
+    if category not in ("tag", "material"):
+        raise ValueError(f"category is 'tag' or 'material', not '{category}'")
+    if segmentation not in ("rle", "polygon"):
+        raise ValueError(f"segmentation is 'rle' or 'polygon', not '{segmentation}'")
+    if value_range is not None and not value_range[0] < value_range[1]:
+        raise ValueError(f"value_range is (black, white), the lower first, not {tuple(value_range)}")
+
+
+def _categories(datasets: Mapping[str, xr.Dataset], category: str,
+                names: Union[str, Sequence[str], None]) -> list[str]:
+    there = _names_of(datasets, category)
+    if names is None:
+        return there
+    chosen = [names] if isinstance(names, str) else list(names)
+    if not set(chosen) & set(there):
+        raise ValueError(f"no {category} is named {', '.join(chosen) or '(names is empty)'}; there is: {', '.join(there)}")
+    return chosen
 
 
 def _quantity(dataset: xr.Dataset) -> str:
@@ -203,12 +233,12 @@ def _twice_area(ring: list[tuple[int, int]]) -> int:
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(ring, ring[1:] + ring[:1]))
 
 
-def _picture(dataset: xr.Dataset, bands: Sequence[str] | None, stretch: tuple[float, float],
+def _picture(dataset: xr.Dataset, bands: Union[str, Sequence[str], None], stretch: tuple[float, float],
              value_range: tuple[float, float] | None) -> Pixels:
     """uint8 as [y, x] or [y, x, 3]; linear between ends that all bands share, then sRGB."""
     array = dataset[_quantity(dataset)]
     there = [str(b) for b in array["band"].values]
-    chosen = list(bands) if bands is not None else [there[i - 1] for i in dataset.attrs.get("default_bands", [1])]
+    chosen = [bands] if isinstance(bands, str) else list(bands) if bands is not None else [there[i - 1] for i in dataset.attrs.get("default_bands", [1])]
     if len(chosen) not in (1, 3) or not set(chosen) <= set(there):
         raise ValueError(f"a picture has one or three of the bands {', '.join(there)}, not {', '.join(chosen)}")
     values = np.stack([array.values[there.index(b)] for b in chosen], axis=-1).astype(np.float64)

@@ -6,10 +6,11 @@ ValueError, with the key).
 from __future__ import annotations
 
 import datetime
+import difflib
 import os
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
-from typing import Any, Mapping, Sequence, Union
+from typing import Any, Mapping, Sequence, TypeVar, Union
 
 import numpy as np
 import xarray as xr
@@ -19,6 +20,8 @@ FileName = Union[str, os.PathLike[str]]
 """A name of a file. In a tree a `str` counts from the folder of the text, as in a text written by hand; a `pathlib.Path`
 from the working folder."""
 
+_K = TypeVar("_K", bound="Keys")
+
 MARK = "# Written by remote_scenes"
 
 
@@ -27,6 +30,14 @@ class Keys:
     """Keys of a text. None = the key is not written. `more`: keys that this class does not know, written as they are."""
 
     more: dict[str, Any] = field(default_factory=dict)
+
+    def __new__(cls: type[_K], *args: Any, **keys: Any) -> _K:
+        """TypeError with the nearest key for one that this class does not know."""
+        known = [f.name for f in fields(cls)]
+        for name in keys:
+            if name not in known and (near := difflib.get_close_matches(name, known, 1)):
+                raise TypeError(f"{cls.__name__} has no key '{name}'; did you mean '{near[0]}'?")
+        return super().__new__(cls)
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in {f.name for f in fields(self)}:

@@ -139,6 +139,22 @@ class Diagnostics(unittest.TestCase):
         self.assertIn("unknown diagnostic code 'DR113x'", done.stderr)
         self.assertIn("DR113", done.stderr)
 
+    def test_a_code_is_explained(self):
+        listed = self.run_program("dirsig-render", "--list-diagnostics")
+        done = subprocess.run([BIN / "dirsig-render", "--explain", "DR402"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        condition, cure = re.search(r"^DR402  info +(.*)\n +(.*)$", listed, re.M).groups()
+        self.assertEqual(done.stdout, f"DR402: info: {condition}\n  {cure}\n")
+        wrong = subprocess.run([BIN / "dirsig-render", "--explain", "DR499"], capture_output=True, text=True)
+        self.assertEqual(wrong.returncode, 1)
+        self.assertIn("unknown diagnostic code 'DR499'", wrong.stderr)
+
+    def test_the_page_of_codes_is_the_programs_list(self):
+        listed = self.run_program("dirsig-render", "--list-diagnostics")
+        rows = re.findall(r"^(DR\d+)  (\w+) +(.*)\n +(.*)$", listed, re.M)
+        page = (SOURCES / "docs/reference/diagnostics.md").read_text()
+        self.assertEqual(re.findall(r"^\| (DR\d+) \| (\w+) \| (.*) \| (.*) \|$", page, re.M), rows)
+
     def test_every_code_is_listed_documented_and_provoked(self):
         listed = re.findall(r"^(DR\d+)  ", self.run_program("dirsig-render", "--list-diagnostics"), re.M)
         self.assertEqual(len(set(listed)), len(listed))

@@ -73,6 +73,34 @@ TEST_F(Dirsig, ConvertedItGivesTheSameBytes) {
   EXPECT_NE(read_text(*folder_ / "ours/simulation_import.txt").find("; 0 unread"), std::string::npos);
 }
 
+TEST_F(Dirsig, ConvertKeepsTextsThatWereEdited) {
+  const CommandResult first = run("dirsig-render plane.sim --convert mine");
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_NE(first.err.find("scene-prep mine/plane.yaml -o mine/plane.h5\n"), std::string::npos) << first.err;
+  EXPECT_EQ(run("dirsig-render plane.sim --convert mine -q").code, 0) << "the same texts";
+  for (const char* name : {"mine/plane.yaml", "mine/simulation.yaml"}) {
+    const std::string written = read_text(*folder_ / name), edited = written + "# mine\n";
+    write_file(*folder_ / name, std::string_view(edited));
+    const CommandResult again = run("dirsig-render plane.sim --convert mine -q");
+    EXPECT_EQ(again.code, 1);
+    EXPECT_NE(again.err.find(std::string(name) + ": error: is there with other content"), std::string::npos)
+        << again.err;
+    EXPECT_NE(again.err.find("remove it, or name another folder"), std::string::npos) << again.err;
+    EXPECT_EQ(read_text(*folder_ / name), edited);
+    write_file(*folder_ / name, std::string_view(written));
+  }
+}
+
+TEST_F(Dirsig, ConvertKeepsTextsOfScenesThatWereEdited) {
+  ASSERT_EQ(run("scene-prep plane.scene --convert scene -q").code, 0);
+  EXPECT_EQ(run("scene-prep plane.scene --convert scene -q").code, 0) << "the same texts";
+  write_file(*folder_ / "scene/plane.yaml", std::string_view("scene: 1\n"));
+  const CommandResult again = run("scene-prep plane.scene --convert scene -q");
+  EXPECT_EQ(again.code, 1);
+  EXPECT_NE(again.err.find("scene/plane.yaml: error: is there with other content"), std::string::npos) << again.err;
+  EXPECT_EQ(read_text(*folder_ / "scene/plane.yaml"), "scene: 1\n");
+}
+
 TEST_F(Dirsig, ThermFollowsFromTheWeatherOfTheSimulation) {
   const CommandResult r = run("dirsig-render warm.sim -o warm --set heat.elements=200 --set heat.paths=32");
   ASSERT_EQ(r.code, 0) << r.err;

@@ -138,9 +138,17 @@ class Chips(Case):
         self.assertGreaterEqual(min(a["area"] for a in some["annotations"]), 5)
         by_material = rs.write_chips(image, self.folder / "material", size=64, category="material")
         self.assertEqual([c["name"] for c in by_material["categories"]], ["lawn", "car", "ring"])
-        for wrong, said in (({"bands": ["blue"]}, "red, nir, green, not blue"), ({"size": 0}, "0 pixels")):
+        for wrong, said in (({"bands": ["blue"]}, "red, nir, green, not blue"), ({"size": 0}, "size must be at least 1"),
+                            ({"stride": 0}, "stride must be at least 1"), ({"segmentation": "mask"}, "'rle' or 'polygon'"),
+                            ({"value_range": (5, 1)}, "the lower first"), ({"names": ["bus"]}, "named bus; there is: car, ring; big"),
+                            ({"names": []}, "names is empty"), ({"category": "instance"}, "category is 'tag' or 'material'")):
             with self.assertRaisesRegex(ValueError, said):
                 rs.write_chips(image, self.folder / "wrong", **wrong)
+        one = rs.write_chips(image, self.folder / "one", size=64, bands="red", names=["bus", "car"])
+        self.assertEqual(png_pixels(self.folder / "one/images" / one["images"][0]["file_name"])[2], 1)
+        self.assertEqual({a["category_id"] for a in one["annotations"]}, {2})
+        whole = rs.write_chips(rs.Result(self.folder / "out"), self.folder / "whole", size=64)
+        self.assertEqual([i["source"] for i in whole["images"]], ["map"])
         for truth, said in ((["material", "instance"], "no classes by tag"), (["tag"], "which instance")):
             with self.assertRaisesRegex(ValueError, said):
                 rs.write_chips(self.image(truth=truth), self.folder / "wrong")

@@ -81,6 +81,10 @@ class Texts(Case):
         camera.more["flip"] = ["columns"]
         self.assertEqual(plain(camera)["flip"], ["columns"])
 
+    def test_a_misspelt_key_names_the_nearest(self):
+        with self.assertRaisesRegex(TypeError, "Orthographic has no key 'column'; did you mean 'columns'"):
+            rs.Orthographic(column=3, rows=2, gsd_m=1)
+
     def test_texts_by_hand_are_never_replaced(self):
         path = self.folder / "s.yaml"
         scene = rs.Scene("one")

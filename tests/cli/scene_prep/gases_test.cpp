@@ -109,7 +109,7 @@ TEST_F(BakeGases, TheTableServesARender) {
   ASSERT_EQ(baked.code, 0) << baked.err;
   EXPECT_THAT(baked.out, HasSubstr("co2   40 lines"));
   EXPECT_THAT(baked.out, HasSubstr("10 bands from 950 to 1000 cm-1"));
-  EXPECT_THAT(baked.err, HasSubstr("baking: 480 spectrum in"));
+  EXPECT_THAT(baked.err, HasSubstr("baking: 480 spectra in"));
   EXPECT_THAT(baked.err, HasSubstr("no partition sum of isotopologue 1"));
   EXPECT_EQ(read_air_table(folder_ / "gases.h5").source, "made-up lines");
   ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5").code, 0);

@@ -263,6 +263,8 @@ TEST(Settings, FaultsAreToldAtTheirPlace) {
     const char *setting, *told;
   } table[] = {
       {"sensros.0.paths=1", "--set sensros.0.paths: error: there is no 'sensros' here; did you mean 'sensors'?"},
+      {"output.also=[geotiff]", "no 'output' here; write --set 'output={also: [geotiff]}'"},
+      {"sun.glare.inner.deg=2", "no 'glare' here; write --set 'sun.glare={inner: {deg: 2}}'"},
       {"sensors.7.paths=1", "no item '7' in this list; its items are 0 to 1, or by name; known: eye, b0.55"},
       {"sensors.eya.paths=1", "did you mean 'eye'"},
       {"seed.deeper=1", "'seed' is a single value"},

@@ -74,7 +74,7 @@ TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
   };
   const auto water = scene("dielectric");
   const auto grey = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
-  EXPECT_EQ(said(water, sun, {}), "1 smooth materials");
+  EXPECT_EQ(said(water, sun, {}), "1 smooth material");
   EXPECT_EQ(said(grey, sun, {}), "no material passes light smoothly");
   EXPECT_EQ(said(water, none, {}), "no sun, moon or lamp in the simulation");
   EXPECT_EQ(said(water, sun, off), "`light_through_refraction: false`");
