@@ -55,17 +55,18 @@ std::string back_note(const HeatScene& scene, const ExchangePaths& exchange) {
   std::vector<std::array<double, 2>> ended(optics.has_heat.size(), {0, 0});  // m2 of emission, in front and behind
   const size_t each = size_t{exchange.blocks} * exchange.paths;
   for (size_t from = 0; from * each < exchange.ends.size(); ++from) {
+    const uint32_t emitter = exchange.rows.face(from);  // beyond the faces there are rows of other intervals
     double all = 0, behind = 0;
     for (size_t k = from * each; k < (from + 1) * each; ++k) {
       const uint32_t end = exchange.ends[k], face = faces.face_of(end);
       all += double{exchange.weights[k]};
       if (face != kNone && end != face) behind += double{exchange.weights[k]};
     }
-    const double counts = behind > 0 ? std::max(0.0, 1 - shut_in(scene, from) * all / behind) : 0;
+    const double counts = behind > 0 ? std::max(0.0, 1 - shut_in(scene, emitter) * all / behind) : 0;
     for (size_t k = from * each; k < (from + 1) * each; ++k) {
       const uint32_t end = exchange.ends[k], face = faces.face_of(end);
       if (face == kNone) continue;
-      const double sent = exchange.area[from] * double{exchange.weights[k]};
+      const double sent = exchange.area[emitter] * double{exchange.weights[k]};
       ended[elements[faces.element(face)].material][end == face ? 0 : 1] += end == face ? sent : counts * sent;
     }
   }
