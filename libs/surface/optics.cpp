@@ -45,13 +45,19 @@ std::unique_ptr<const TemperatureField> field_for(const TemperatureSpec& spec, c
   return field_of(std::move(model), loads);
 }
 
+// The fault, naming the material once.
+Error of_material(const Error& e, const std::string& material) {
+  const std::string name = "material '" + material + "': ";
+  return Error(e.where(), e.message().starts_with(name) ? e.message() : name + e.message(), e.hint(), e.code());
+}
+
 // Error: naming the material.
 std::unique_ptr<SolvedField> solved_field(const TemperatureSpec& spec, const std::string& material, double begin,
                                           double end) {
   try {
     return std::make_unique<SolvedField>(spec, begin, end);
   } catch (const Error& e) {
-    throw Error(e.where(), "material '" + material + "': " + e.message(), e.hint(), e.code());
+    throw of_material(e, material);
   }
 }
 
@@ -192,7 +198,7 @@ void Optics::bake_all(const Scene& scene, const std::vector<bool>& used, const H
     try {
       bake_one(scene, i, heating);
     } catch (const Error& e) {
-      throw Error(e.where(), "material '" + scene.materials[i].id + "': " + e.message(), e.hint(), e.code());
+      throw of_material(e, scene.materials[i].id);
     }
   }
   // Parts of mixtures exist now; what they need, the mixture needs.

@@ -151,8 +151,8 @@ constexpr Broken kBroken[] = {
     {"attachments:", "attachements:", "yaml:11:5", "unknown key 'attachements'; did you mean 'attachments'?"},
     {"epoch: 2026-06-21T10:30:00Z", "epoch: 2026-06-31T10:30:00Z", "yaml:2:8", "2026-06 has no day 31"},
     {"columns: 10\n                rows: 8\n                pitch_um: 5",
-     "columns: 100000\n                rows: 40000\n                pitch_um: 0.001", "yaml",
-     "the largest capture takes 1.63e+03 GB, and this machine has "},
+     "columns: 100000\n                rows: 40000\n                pitch_um: 0.001", "yaml:5:5",
+     "the largest capture of sensor 'uas' takes 1.63e+03 GB, and this machine has "},
 };
 
 class PlatformInput : public testing::Test {

@@ -78,7 +78,7 @@ TEST_F(WarmRoof, FaultsOfLoads) {
   ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5").code, 0);
   const CommandResult render = run("dirsig-render sim.yaml -o out -q");
   EXPECT_EQ(render.code, 1);
-  EXPECT_THAT(render.err, HasSubstr("its loads are given from 0 to 86400 s"));
+  EXPECT_THAT(render.err, HasSubstr("): material 'concrete': a table over time is asked for"));
 }
 
 TEST_F(WarmRoof, SlabsWithoutLoadsAreRefused) {
