@@ -291,8 +291,9 @@ void SlabBatch::keep_means(size_t block) {
     const size_t e = block * kLanes + l;
     top_mean_[e] = kW * (now[0].get(l) + middle_[0].get(l)) + kD * end[0].get(l);
     bottom_mean_[e] = kW * (now[n - 1].get(l) + middle_[n - 1].get(l)) + kD * end[n - 1].get(l);
-    const double coldest = std::min({middle_[0].get(l), middle_[n - 1].get(l), end[0].get(l), end[n - 1].get(l)});
-    if (!(coldest > kVanished)) end_[block * n].set(l, NAN);  // told by keep_estimates
+    // A first stage that fell to nothing is mended by the second, as where a search begins far from its loads.
+    const double coldest = std::fmin(end[0].get(l), end[n - 1].get(l));
+    if (!(coldest > kVanished)) vanished_ = true;
   }
 }
 
@@ -315,11 +316,12 @@ void SlabBatch::keep_estimates(size_t block, const Lanes* errors) {
 double SlabBatch::attempt(double dt, const BatchLoads& loads) {
   loads(t_, t_ + dt, *this, top_lines_, bottom_lines_);
   end_.resize(now_.size());
+  vanished_ = false;
   check_lines(top_lines_, "top");
   check_lines(bottom_lines_, "bottom");
   if (neighbours_) {
     step_lateral(dt);
-    return *std::max_element(estimate_.begin(), estimate_.end());
+    return vanished_ ? INFINITY : largest_estimate();
   }
   if (linear_) eliminate(kD * dt);
   const size_t blocks = now_.size() / nodes();
@@ -334,7 +336,7 @@ double SlabBatch::attempt(double dt, const BatchLoads& loads) {
     keep_means(block);
     estimate_error(block, dt, faces);  // overwrites the middle
   }
-  return *std::max_element(estimate_.begin(), estimate_.end());
+  return vanished_ ? INFINITY : largest_estimate();
 }
 
 void SlabBatch::accept(double dt) {

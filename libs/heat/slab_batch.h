@@ -9,6 +9,7 @@
 // because both are increasing and convex. With other properties Newton's method takes all nodes and an elimination an
 // element and turn. Elements that conduct to each other along the surface are solved together (slab_batch_lateral.h).
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
@@ -58,7 +59,8 @@ class SlabBatch {
   void rest() { std::vector<Lanes>().swap(end_); }
   void set_kelvin(size_t element, size_t node, double kelvin);
 
-  // One step (s, > 0) of all elements; one after which an element would hold less than no heat is taken in parts.
+  // One step (s, > 0) of all elements; one after which an element would hold less than no heat is taken in parts, or,
+  // where these find none either (loads below 0), as it is.
   // Error: loads that are not finite, or negative where they must not be; no temperature above 0 K.
   void step(double dt, const BatchLoads& loads);
   // Goes on to time t with steps whose largest estimate of all elements keeps to `control`; appends them to `steps`
@@ -153,7 +155,9 @@ class SlabBatch {
   void solve_matrix(Lanes* right);
   void solve_newton(const Lanes* history, const Faces& faces, double scale, Lanes* kelvin);
   void step_newton(size_t block, double dt, const FaceEnds& faces);
-  double attempt(double dt, const BatchLoads& loads);  // into end_; the largest estimate
+  // Into end_. The largest estimate; infinite where there are no temperatures, or one of 0 K.
+  double attempt(double dt, const BatchLoads& loads);
+  double largest_estimate() const { return *std::max_element(estimate_.begin(), estimate_.end()); }
   void accept(double dt);
   void step_in_parts(double dt);  // of the lines of the last attempt
 
@@ -169,6 +173,7 @@ class SlabBatch {
   std::vector<Row> matrix_;
   FaceLines top_lines_, bottom_lines_;
   std::vector<double> top_mean_, bottom_mean_, estimate_;
+  bool vanished_ = false;  // a face was at 0 K after the last attempt
   Elimination elimination_;
   Counters counters_;
 };

@@ -31,6 +31,7 @@ FaceLines between(const FaceLines& whole, double begin, double end) {
 void SlabBatch::step_in_parts(double dt) {
   const double begin = t_;
   const FaceLines top = top_lines_, bottom = bottom_lines_;
+  const std::vector<Lanes> before = now_;
   std::vector<double> tops(elements_), bottoms(elements_), errors(elements_);
   double done = 0, part = 0.5;  // shares of the step, which doubles hold exactly
   while (done < 1) {
@@ -39,9 +40,16 @@ void SlabBatch::step_in_parts(double dt) {
         attempt(part * dt, [&](double, double, const SlabBatch&, FaceLines& now_top, FaceLines& now_bottom) {
           now_top = between(top, done, done + part), now_bottom = between(bottom, done, done + part);
         });
-    if (!std::isfinite(estimate) && part <= kFinest)
-      throw Error(strf("slabs find no temperatures after a step of %g s from %.9g s", dt, begin),
-                  "a shorter step_s, or layers that hold more heat");
+    if (!std::isfinite(estimate) && part <= kFinest) {
+      now_ = before, t_ = begin;
+      attempt(dt, [&](double, double, const SlabBatch&, FaceLines& now_top, FaceLines& now_bottom) {
+        now_top = top, now_bottom = bottom;
+      });
+      if (!std::isfinite(largest_estimate()))
+        throw Error(strf("slabs find no temperatures after a step of %g s from %.9g s", dt, begin),
+                    "a shorter step_s, or layers that hold more heat");
+      return accept(dt);
+    }
     if (!std::isfinite(estimate) || (estimate > kError && part > kFineEnough)) {
       part /= 2;
       continue;
