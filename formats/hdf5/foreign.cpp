@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include "base/files.h"
+#include "formats/hdf5/global_heap.h"
 #include "formats/hdf5/own_values.h"
 #include "formats/hdf5/silence.h"
 
@@ -33,6 +34,8 @@ Foreign::Foreign(const std::string& path) : path_(path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(access, false, true);
   if (H5Fis_hdf5(path.c_str()) <= 0) fail("is not an HDF5 file");
+  if (const auto broken = broken_global_heap(path))
+    fail(strf("is a damaged HDF5 file: the global heap at byte %zu has an object of an impossible size", *broken));
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (file_ < 0) fail("is a damaged HDF5 file");
 }
