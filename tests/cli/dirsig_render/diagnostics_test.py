@@ -31,10 +31,15 @@ materials:
     reflectance: {points: [[0.4, 0.2], [0.7, 0.3]], outside: hold}
     thermal: {thickness_m: 0.2, density_kg_m3: 2300, specific_heat_j_kg_k: 900, conductivity_w_m_k: 1.4}
     temperature: {model: heat}
+  edge: {inside: mist}
+media:
+  mist: {extinction: 0.01, albedo: 0.5}
 objects:
+  cloud: {box: {x0: -2, y0: -2, z0: 5, x1: 2, y1: 2, z1: 6}, material: edge}
   yard: {plane: {width: 20, depth: 20}, material: concrete}
   wall: {box: {x0: -1, y0: -1, z0: 0, x1: 1, y1: 1, z1: 3}, material: concrete}
 world:
+  - {place: cloud}
   - {place: yard}
   - {place: wall}
 """
@@ -50,9 +55,9 @@ def camera(bands=RED, more="", kind="frame_camera", position="[0, -20, 30]"):
             f"{position}, look_at_m: [0, 0, 0], paths: 4, bands: {bands}{more}}}\n")
 
 
-def heat(keys=", paths: 8", span=""):
+def heat(keys=", paths: 8"):
     return ("epoch: 2001-07-14T07:00:00Z\nweather: {file: denver.epw, year: 2001}\n"
-            f"heat: {{elements: 12, step_s: 1800{keys}}}\n" + camera(WARM, ", time_s: 43200" + span))
+            f"heat: {{elements: 12, step_s: 1800{keys}}}\n" + camera(WARM, ", time_s: 43200"))
 
 
 class Diagnostics(unittest.TestCase):
@@ -96,8 +101,8 @@ class Diagnostics(unittest.TestCase):
 
     def test_of_heat(self):
         self.expect("DR601", heat(", target_k: 0.001"), scene="roof")
-        self.expect("DR603", heat(), scene="roof", out="found")  # what lies beyond the curves
-        self.expect("DR604", heat(span=", integration_time_s: 60"), "--heat", "found/heat.h5", scene="roof")
+        self.expect("DR603", heat(), scene="roof", out="found")  # media are passed by
+        self.expect("DR604", heat(", paths: 8, from: 2001-07-14T07:00:00Z, to: 2001-07-15T13:00:00Z"), "--heat", "found/heat.h5", scene="roof")
         self.expect("DR605", heat())
 
     def test_of_imports(self):
