@@ -11,6 +11,21 @@ namespace suite {
 
 namespace {
 
+constexpr double kSimulated = 400;  // K: what simulated surfaces stay below unless they are told otherwise
+
+// The highest temperature that a simulated surface is given, or that its loads could hold it at. K.
+double hottest_of(const TemperatureSpec& spec) {
+  double most = 0;
+  for (const auto& [name, value] : spec.numbers)
+    if (name.ends_with("_k")) most = std::max(most, value);
+  const auto held_at = [](double flux) { return std::pow(std::max(0.0, flux) / kStefanBoltzmann, 0.25); };
+  if (const auto source = spec.numbers.find("source_w_m2"); source != spec.numbers.end())
+    most = std::max(most, held_at(source->second));
+  for (const SurfaceLoad& load : spec.loads)
+    most = std::max({most, load.air_temperature, held_at(load.sun_absorbed + load.sky_irradiance)});
+  return most;
+}
+
 using Rows = std::vector<std::vector<float>>;
 
 bool known_in(const Curve& curve, std::span<const Bin> bins) {
@@ -72,8 +87,10 @@ class Gatherer {
       else if (!t.spec.kelvins.empty())
         ladder(*std::min_element(t.spec.kelvins.begin(), t.spec.kelvins.end()),
                *std::max_element(t.spec.kelvins.begin(), t.spec.kelvins.end()));
-      else if (!t.spec.model.empty())
-        ladder(200, 400);
+      else if (!t.spec.model.empty()) {
+        ladder(200, kSimulated);
+        if (const double hottest = hottest_of(t.spec); hottest > kSimulated) ladder(kSimulated, hottest);
+      }
     }
     const auto of_values = [&](const std::vector<float>& values) {
       float low = INFINITY, high = 0;

@@ -155,6 +155,37 @@ TEST(GasBins, LightsThatAreTooDarkToMatterHaveAnError) {
   }
 }
 
+// Slabs whose loads hold them at 1500 K, in the visible; the bins of what stays below 400 K are the negative control.
+TEST(GasBins, SlabsThatAreHot) {
+  const std::vector<Band> bands{Band::rectangular("b", 0.55, 0.1)};
+  ModelSpec model;
+  model.model = "lambert";
+  model.curves["reflectance"] = Curve::constant(0.3);
+  const auto off = [&](double kelvin) {
+    Scene scene = *test::scene_of({test::quad(1, 0, 0)}, {test::material("engine", model)});
+    TemperatureBinding binding;
+    binding.material = 0, binding.spec.model = "slab";
+    binding.spec.loads = {{0, kStefanBoltzmann * std::pow(kelvin, 4), kelvin, 2}};
+    scene.temperatures.push_back(binding);
+    SourceSpecs lit;  // beside a light of one colour what is below 400 K is too dark to matter
+    lit.add(SunSpec{{{0.6, 0, 0.8}, 0.00465, Curve::constant(1000)}});
+    auto air = std::make_shared<AirSpec>(summer());
+    air->gases = nullptr, air->molecules = false, air->aerosol.reset();
+    lit.air = air;
+    test::BinSensor sensor({{{0, 0, 9}, {0, 0, -1}, 0}}, bands, 16, 1e-3);
+    choose_bins(scene, {&lit, 1}, sensor);
+    const std::vector<float> chosen = blackbody_means(sensor.state().bins, 1500);
+    const BandProjection projection(sensor.state(), bands);
+    double mean = 0;
+    for (size_t i = 0; i < chosen.size(); ++i) mean += projection.weight(0, i) * double{chosen[i]};
+    return std::fabs(mean / (planck_band_radiance(0.5, 0.6, 1500) / 0.1) - 1);
+  };
+  const double hot = off(1500), cool = off(300);
+  std::printf("%.3g %% off; by bins for 400 K %.3g %%\n", 100 * hot, 100 * cool);
+  EXPECT_LT(hot, 1e-3);
+  EXPECT_GT(cool, 3e-3);
+}
+
 // What the report says of each band holds, and bands that are far off are named by wavelength.
 TEST(GasBins, ReportsWhatEvenIntervalsMiss) {
   const std::vector<Band> bands{Band::gaussian("slope", 1.8312, 0.0336), Band::gaussian("window", 1.65, 0.0336),
