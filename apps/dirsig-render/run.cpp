@@ -1,7 +1,8 @@
-#include "run.h"
+#include "air_lut.h"
 
 #include <cmath>
 
+#include "air_lut.h"
 #include "air_told.h"
 #include "base/diagnostics.h"
 #include "base/files.h"
@@ -321,6 +322,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
     return read_scene_origin(scenes.front().path).origin;
   };
   Simulation sim = simulation_of(o, callbacks, !ranks);
+  if (!o.air_lut.empty()) return run_air_lut(o, sim);
   JobOptions options = job_options(sim, o);
   const std::vector<int> forecast = ranks_of(cli, o);
   const LinkCosts link = link_of(cli, o);
