@@ -304,7 +304,6 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
   if (!o.convert.empty()) return convert_simulation(o);
-
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
   size_t delivered = 0;         // captures whose results were handed over
