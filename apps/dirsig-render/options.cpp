@@ -63,6 +63,12 @@ void declare_questions(Cli& cli, RenderOptions& o) {
       "--air", o.air,
       "print the layers of real air (`atmosphere: {profile: ...}`) and, for each band, what they let through and the "
       "light at the ground, and stop; of a deck (.tp5, .ltn, tape5) in place of a simulation: its paths in our air");
+  cli.option(
+      "--air-lut", o.air_lut,
+      "make a table for atmospheric correction of the simulation's real air and its sensor's bands over the grid "
+      "in this text (formats/air_lut/FORMAT.md), write FOLDER/air_lut.nc and air_lut.csv, and stop; goes on from "
+      "what a stopped run has done",
+      "GRID.yaml");
   cli.option("--against", o.against,
              "with --air and a deck: what the deck's own program wrote (tape7, .json), and the "
              "differences from it",

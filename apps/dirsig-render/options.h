@@ -11,7 +11,8 @@ struct RenderOptions {
   std::string simulation, output = "out";
   std::vector<std::string> plugins, settings, search;
   std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard", kit_memory,
-                                            memory, ranks, link, against, heat, heat_operator, account, convert;
+                                            memory, ranks, link, against, air_lut, heat, heat_operator, account,
+                                            convert;
   std::string view, view_size = "256MiB";  // page
   std::string part, plan;                  // K/N; folder of a state of the whole
   std::vector<std::string> merge;          // folders of parts

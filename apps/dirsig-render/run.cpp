@@ -1,7 +1,8 @@
-#include "run.h"
+#include "air_lut.h"
 
 #include <cmath>
 
+#include "air_lut.h"
 #include "air_told.h"
 #include "base/diagnostics.h"
 #include "base/files.h"
@@ -303,7 +304,6 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
   if (!o.convert.empty()) return convert_simulation(o);
-
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
   size_t delivered = 0;         // captures whose results were handed over
@@ -321,6 +321,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
     return read_scene_origin(scenes.front().path).origin;
   };
   Simulation sim = simulation_of(o, callbacks, !ranks);
+  if (!o.air_lut.empty()) return run_air_lut(o, sim);
   JobOptions options = job_options(sim, o);
   const std::vector<int> forecast = ranks_of(cli, o);
   const LinkCosts link = link_of(cli, o);

@@ -143,7 +143,7 @@ void DiscreteOrdinates::State::couple_ground() {
 
 void DiscreteOrdinates::State::solve_orders() {
   int most = 1;
-  if (beam_irradiance > 0 && std::fabs(beam_cosine) < 1)
+  if (beam_irradiance > 0 && std::fabs(beam_cosine) < 1 && std::isfinite(azimuth_tolerance))
     for (const ScaledLayer& at : layer) most = std::max(most, at.terms);
   if (static_cast<int>(order.size()) < most) order.resize(most);
   int small = 0;

@@ -54,7 +54,8 @@ struct DiffuseProblem {
   double ground_albedo = 0;    // 0..1
   double ground_emission = 0;  // radiance, >= 0
   // Azimuth orders end when the sources of two in succession are below this part of that of order 0; the radiance is
-  // then off by less (haze L, cloud C.1: at most 0.4 of it).
+  // then off by less (haze L, cloud C.1: at most 0.4 of it). Infinite: the mean over azimuths alone, which is all that
+  // fluxes and views straight up or down have.
   double azimuth_tolerance = 3e-4;
 };
 

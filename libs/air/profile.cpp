@@ -130,6 +130,18 @@ AirProfile standard_profile(std::string_view name) {
   return profile;
 }
 
+namespace {
+
+// Nitrogen makes room for more water vapour, and fills what less of it leaves.
+void make_room(AirProfile& out, const AirProfile& before) {
+  for (size_t i = 0; i < out.levels.size(); ++i) {
+    const double was = before.levels[i].share(Gas::h2o), is = out.levels[i].share(Gas::h2o);
+    if (is != was && was < 1) out.levels[i].share(Gas::n2) *= std::max(0.0, 1 - is) / (1 - was);
+  }
+}
+
+}  // namespace
+
 AirProfile scaled(const AirProfile& profile, const ProfileScaling& scaling) {
   AirProfile out = profile;
   check_profile(out);
@@ -149,6 +161,7 @@ AirProfile scaled(const AirProfile& profile, const ProfileScaling& scaling) {
   }
   if (scaling.water) scale(out, Gas::h2o, factor_to(*scaling.water, precipitable_water(out), Gas::h2o));
   if (scaling.ozone) scale(out, Gas::o3, factor_to(*scaling.ozone, dobson(out), Gas::o3));
+  make_room(out, profile);
   check_profile(out);
   return out;
 }

@@ -50,7 +50,7 @@ void check_level(const AirLevel& level, const AirLevel* below, const Where& wher
 std::span<const std::string_view> standard_profiles();
 AirProfile standard_profile(std::string_view name);
 
-// What of a profile is set by the user; what is not given stays.
+// What of a profile is set by the user; what is not given stays, but that nitrogen makes room for water vapour.
 struct ProfileScaling {
   std::optional<double> water;                          // precipitable water over the lowest level, kg/m2
   std::optional<double> ozone;                          // Dobson units over the lowest level

@@ -49,7 +49,8 @@ size_t checked_size(int fd, const std::string& path) {
 
 int open_checked(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0 && errno == ENOENT) fail(path, "no such file", "check the name; relative names start at the naming file");
+  if (fd < 0 && errno == ENOENT)
+    fail(path, "no such file", "check the name; a name in a text is relative to the folder of that text");
   if (fd < 0) fail(path, strf("cannot be opened: %s", std::strerror(errno)));
   return fd;
 }

@@ -175,6 +175,19 @@ void add_bands_of_file(const Params& item, const SensorContext& context, std::ve
   }
 }
 
+// Error: an item of no kind, at the first of its keys: a missing 'name' would hide keys such as 'from_nm'.
+void check_says_which(const Params& item) {
+  constexpr const char* kKinds =
+      "give name, center_um and fwhm_um; name and response; from_um, to_um and count; or responses";
+  if (item.has("center_um") || item.has("response")) return;
+  const std::vector<std::string> keys = item.keys();
+  for (const std::string& key : keys)
+    if (key != "name" && key != "fwhm_um" && key != "shape")
+      throw Error(item.where(key), "a band has no key '" + key + "'",
+                  std::string(kKinds) + "; wavelengths are in micrometres");
+  throw item.error("the band has no wavelengths", kKinds);
+}
+
 }  // namespace
 
 std::vector<Band> read_bands(const Params& list, const SensorContext& context) {
@@ -186,8 +199,10 @@ std::vector<Band> read_bands(const Params& list, const SensorContext& context) {
       add_even_bands(item, bands);
     else if (item.has("responses"))
       add_bands_of_file(item, context, bands);
-    else
+    else {
+      check_says_which(item);
       bands.push_back(read_band(item, context));
+    }
     for (size_t i = before; i < bands.size(); ++i)
       if (!names.insert(bands[i].name).second)
         throw item.error("two bands are named '" + bands[i].name + "'", "give each its own name");

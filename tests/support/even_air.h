@@ -61,7 +61,7 @@ inline void solve(const AirSpec& air, const SpectralState& state, const EvenGrou
     problem.beam.cosine = ground.sun_cosine;
     problem.ground_albedo = double{rho[i]};
     problem.ground_emission = (1 - double{rho[i]}) * double{column.blackbody[column.ground * bins + i]};
-    problem.azimuth_tolerance = 1e9;  // straight down there is but the mean over azimuth
+    problem.azimuth_tolerance = INFINITY;  // straight down there is but the mean over azimuth
     solver.solve(problem);
     out[i] = solver.radiance({static_cast<int>(view), 0}, 1, 0, single);
   }

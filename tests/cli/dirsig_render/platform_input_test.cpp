@@ -101,7 +101,7 @@ constexpr Broken kBroken[] = {
      "the lens distortion folds over at (-0.025, -0.020) mm of the focal plane; use smaller coef"},
     {"sigma_um: 3", "sigma_um: 0", "yaml:19:45", "0 is outside the valid range; give a value from 1e-06 to 1e+06 um"},
     {"psf: {kind: gaussian, sigma_um: 3}", "psf: {kind: image, file: none.png, pixel_um: 1}", "yaml:19:18",
-     "no such file; check the name; relative names start at the naming file"},
+     "no such file; check the name; a name in a text is relative to the folder of that text"},
     {"psf: {kind: gaussian, sigma_um: 3}", "psf: {kind: mtf, cycles_per_mm: [0, 10], value: [1, 1.5]}", "yaml:19:18",
      "an MTF has ascending frequencies and values from 0 to 1"},
     {"clock: {rate_hz: 2}", "clock: {rate_hz: 2, offset_s: 5}", "yaml:9:12",

@@ -101,6 +101,9 @@ TEST(Profile, RefusesWhatIsNone) {
     change(s);
     return message_of([&] { scaled(good, s); });
   };
+  ProfileScaling humid;  // nitrogen makes room
+  humid.water = 45;
+  EXPECT_EQ(message_of([&] { scaled(standard_profile("midlatitude_summer"), humid); }), "no error");
   EXPECT_THAT(scaling([](ProfileScaling& s) { s.water = -1; }), HasSubstr("an amount of h2o of -1"));
   EXPECT_THAT(scaling([](ProfileScaling& s) { s.water = 2000; }), HasSubstr("share of h2o"));
   EXPECT_THAT(scaling([](ProfileScaling& s) { s.surface_pressure = 1000; }),

@@ -57,6 +57,10 @@ TEST(Bands, FaultsHaveTheirPlace) {
   EXPECT_THAT(message("{from_um: 1, to_um: 2}"), HasSubstr("count"));
   EXPECT_THAT(message("[{from_um: 1, to_um: 2, count: 2}, {from_um: 2, to_um: 3, count: 2}]"),
               HasSubstr("two bands are named '2000 nm'"));
+  EXPECT_THAT(message("{from_nm: 400, to_nm: 700, count: 4}"),
+              AllOf(HasSubstr("s.yaml:1:"), HasSubstr("a band has no key 'from_nm'"), HasSubstr("micrometres")));
+  EXPECT_THAT(message("{name: b, center_nm: 550, fwhm_um: 0.01}"), HasSubstr("a band has no key 'center_nm'"));
+  EXPECT_THAT(message("{name: b, fwhm_um: 0.01}"), HasSubstr("the band has no wavelengths; give name, center_um"));
   EXPECT_THAT(message("{responses: f.csv, names: [B8]}"), HasSubstr("the file has no band 'B8'; did you mean"));
 }
 

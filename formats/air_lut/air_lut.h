@@ -1,0 +1,35 @@
+// Grids of states of the air as text, and tables over them as netCDF and CSV. FORMAT.md.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/params.h"
+#include "correction/lut.h"
+
+namespace suite {
+
+// What a text asks for.
+struct LutRequest {
+  LutAxes axes = lut_axes();
+  std::string sensor;  // of the simulation; empty: its only one
+  LutFineness fineness;
+  bool check = true;  // one state is solved more finely, and the difference kept
+  std::array<Where, kLutAxes> where;
+  Where text;  // as a whole
+};
+
+// Error, located: unknown or missing keys, values out of their ranges or not ascending.
+LutRequest read_lut_request(const std::string& path);
+
+// States in their order; errors: one solution's differences (lut_difference), or empty lists.
+struct LutResult {
+  std::vector<LutState> states;
+  LutValues errors;
+};
+// notes: attributes of the file, such as history. Error: cannot be written.
+void write_lut_netcdf(const std::string& path, const LutTable& table, const LutResult& result,
+                      const std::vector<std::pair<std::string, std::string>>& notes);
+// A row for each state, view and band, under a header with units.
+void write_lut_csv(const std::string& path, const LutTable& table, const LutResult& result);
+
+}  // namespace suite

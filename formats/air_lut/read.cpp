@@ -1,0 +1,45 @@
+#include "formats/air_lut/air_lut.h"
+
+namespace suite {
+
+namespace {
+
+std::vector<double> ascending(const Params& p, const LutAxis& axis) {
+  std::vector<double> values = p.kind() == Params::Kind::scalar ? std::vector{p.as_number()} : p.as_numbers();
+  if (values.empty()) throw p.error("there are no values", "give at least one, or leave the key out");
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] >= axis.low && values[i] <= axis.high))
+      throw p.error(strf("%g is outside the valid range", values[i]),
+                    strf("give values from %g to %g %s", axis.low, axis.high, axis.unit));
+    if (i > 0 && !(values[i] > values[i - 1]))
+      throw p.error(strf("%g follows %g", values[i], values[i - 1]), "values ascend");
+  }
+  return values;
+}
+
+}  // namespace
+
+LutRequest read_lut_request(const std::string& path) {
+  const Params root = Params::parse_file(path);
+  root.at("air_lut").as_integer(1, 1);
+  LutRequest request;
+  request.text = root.where();
+  for (size_t a = 0; a < kLutAxes; ++a) {
+    LutAxis& axis = request.axes[a];
+    request.where[a] = root.where();
+    if (const auto given = root.find(axis.name)) {
+      axis.values = ascending(*given, axis);
+      request.where[a] = given->where();
+    }
+  }
+  root.at("solar_zenith");  // no default would be right
+  request.sensor = root.text("sensor", std::string());
+  request.fineness.widest_um = 1e-3 * root.number_in("widest_bin_nm", 0, 1000, "nm", 0);
+  request.fineness.streams = static_cast<int>(root.integer("streams", 4, 64, 16));
+  if (request.fineness.streams % 2) throw root.at("streams").error("streams are even", "4, 6, 8, ... 64");
+  request.check = root.boolean("check", true);
+  root.reject_unread();
+  return request;
+}
+
+}  // namespace suite

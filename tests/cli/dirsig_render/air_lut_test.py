@@ -1,0 +1,145 @@
+"""Tables for atmospheric correction, as their users read them: netCDF by other people's readers, stopped runs, faults with
+their place, and the radiance of a rendered ground put together from the table. air_lut_test.py BIN FOLDER
+"""
+import csv
+import math
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import netCDF4
+import numpy
+import xarray
+
+BIN, FOLDER = (pathlib.Path(p).resolve() for p in sys.argv[1:3])
+REFLECTANCE, SUN = 0.3, 40
+BANDS = "[{name: b, center_um: 0.45, fwhm_um: 0.01}, {name: r, center_um: 0.67, fwhm_um: 0.01}, {name: n, center_um: 0.87, fwhm_um: 0.01}, " \
+        "{name: w, center_um: 0.94, fwhm_um: 0.01}, {name: s, center_um: 1.65, fwhm_um: 0.02}]"
+AIR = "{profile: midlatitude_summer, ground_albedo: 0.3, aerosol: {model: rural, depth_550: 0.2}}"
+SCENE = f"""scene: 1
+materials: {{ground: {{model: lambert, reflectance: {REFLECTANCE}}}}}
+objects: {{plane: {{plane: {{width: 0, depth: 0}}, material: ground}}}}
+world: [{{place: plane}}]
+"""
+SIM = f"""scene: scene.h5
+atmosphere: {AIR}
+sun: {{direction: {{zenith_deg: {SUN}, azimuth_deg: 0}}}}
+sensors:
+  - {{name: eye, kind: frame_camera, columns: 3, rows: 3, pitch_um: 10, focal_length_mm: 100, position_m: [3000, 0, 3000], look_at_m: [0, 0, 0],
+     up: [0, 0, 1], paths: 64, bands: {BANDS}}}
+"""
+GRID = f"""air_lut: 1
+AOT550: [0.2, 0.4]
+observer_altitude_km: 3
+observer_zenith: 45
+solar_zenith: {SUN}
+relative_azimuth: [0, 90]
+"""
+
+
+def run(*words, code=0):
+    done = subprocess.run([BIN / words[0], *map(str, words[1:])], cwd=FOLDER, capture_output=True, text=True)
+    assert done.returncode == code, (words, done.stdout, done.stderr)
+    return done.stdout + done.stderr
+
+
+def image(path):
+    header = pathlib.Path(str(path) + ".hdr").read_text()
+    bands = int(re.search(r"bands *= *(\d+)", header)[1])
+    return numpy.fromfile(path, "<f4").reshape(bands, -1), header
+
+
+class AirLut(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(FOLDER, ignore_errors=True)
+        FOLDER.mkdir(parents=True)
+        for name, text in (("scene.yaml", SCENE), ("sim.yaml", SIM), ("grid.yaml", GRID)):
+            (FOLDER / name).write_text(text)
+        run("scene-prep", "scene.yaml", "-o", "scene.h5", "-q")
+        cls.said = run("dirsig-render", "sim.yaml", "--air-lut", "grid.yaml", "-o", "lut")
+
+    def test_other_readers_find_axes_and_units(self):
+        table = xarray.open_dataset(FOLDER / "lut/air_lut.nc")
+        self.assertEqual(dict(table.sizes), {"wl": 5, "AOT550": 2, "relative_azimuth": 2})
+        self.assertEqual(table["rhoatm"].dims, ("wl", "AOT550", "relative_azimuth"))
+        self.assertEqual(table.attrs["RT_mode"], "transm")
+        self.assertAlmostEqual(float(table["coszen"]), math.cos(math.radians(SUN)), 12)
+        with netCDF4.Dataset(FOLDER / "lut/air_lut.nc") as plain:
+            self.assertEqual(plain["thermal_upwelling"].units, "uW cm-2 sr-1 nm-1")
+            self.assertEqual(plain["wl"].units, "nm")
+        # The rows of the CSV are the same numbers.
+        with open(FOLDER / "lut/air_lut.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 20)
+        for row in rows:
+            at = table["sphalb"].sel(wl=float(row["wl (nm)"]), AOT550=float(row["AOT550 (1)"]),
+                                     relative_azimuth=float(row["relative_azimuth (deg)"]))
+            self.assertAlmostEqual(float(row["sphalb (1)"]) / float(at), 1, 5)
+
+    def test_what_is_neglected_is_said_with_its_size(self):
+        self.assertIn("rhoatm is within", self.said)
+        table = xarray.open_dataset(FOLDER / "lut/air_lut.nc")
+        for name in ("rhoatm", "dir-dir", "sphalb"):
+            self.assertTrue(bool((table[name + "_error"] > 0).all()), name)
+            self.assertTrue(bool((table[name + "_error"] < 0.01).all()), name)
+
+    def test_it_gives_the_radiance_of_a_rendered_ground(self):
+        """By paths through the same air: within 1 % and 4 standard errors; without the ground's own light it is not."""
+        run("dirsig-render", "sim.yaml", "-o", "out", "-q", "-j", "2")
+        values, _ = image(FOLDER / "out/eye.img")
+        errors, _ = image(FOLDER / "out/eye_error.img")
+        t = xarray.open_dataset(FOLDER / "lut/air_lut.nc").sel(AOT550=0.2, relative_azimuth=90)
+        both = sum(t[k] for k in ("dir-dir", "dif-dir", "dir-dif", "dif-dif"))
+        sun = 10 * t["solar_irr"] * math.cos(math.radians(SUN)) / math.pi
+        made = sun * (t["rhoatm"] + both * REFLECTANCE / (1 - t["sphalb"] * REFLECTANCE))
+        path = sun * t["rhoatm"]
+        for b in range(5):
+            seen, error = values[b].mean(), errors[b].mean() / 3
+            print(f"{float(t.wl[b]):.0f} nm: table {float(made[b]):.5g}, paths {seen:.5g} +- {error:.2g}")
+            self.assertLess(abs(float(made[b]) - seen), 0.01 * seen + 4 * error, b)
+            self.assertGreater(abs(float(path[b]) - seen), 0.01 * seen + 4 * error, b)
+
+    def test_a_stopped_run_goes_on_to_the_same_bytes(self):
+        (FOLDER / "long.yaml").write_text(GRID.replace("[0.2, 0.4]", "[0.05, 0.1, 0.15, 0.2, 0.25, 0.3]").replace("45", "0") + "check: false\nstreams: 8\n")
+        words = [BIN / "dirsig-render", "sim.yaml", "--air-lut", "long.yaml", "-j", "1", "-o"]
+        subprocess.run([*words, "whole"], cwd=FOLDER, capture_output=True, check=True)
+        job = subprocess.Popen([*words, "parts"], cwd=FOLDER, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        kept = FOLDER / "parts/air_lut_states"
+        while job.poll() is None and not list(kept.glob("*.bin")):
+            time.sleep(0.01)
+        job.send_signal(signal.SIGTERM)
+        said, _ = job.communicate()
+        self.assertEqual(job.returncode, 128 + signal.SIGTERM, said)
+        self.assertFalse((FOLDER / "parts/air_lut.nc").exists())
+        done = len(list(kept.glob("*.bin")))
+        self.assertGreater(done, 0)
+        again = subprocess.run([*words, "parts"], cwd=FOLDER, capture_output=True, text=True, check=True)
+        self.assertIn(f"{done} of 6 states are kept", again.stdout + again.stderr)
+        for name in ("air_lut.nc", "air_lut.csv"):
+            self.assertEqual((FOLDER / "parts" / name).read_bytes(), (FOLDER / "whole" / name).read_bytes())
+        self.assertFalse(kept.exists())
+
+    def test_faults_have_their_place(self):
+        for old, new, said in (("AOT550: [0.2, 0.4]", "AOT550: [0.4, 0.2]", r"bad.yaml:2:\d+.*0.2 follows 0.4"),
+                               ("solar_zenith: 40", "sun: 40", "solar_zenith"),
+                               ("observer_zenith: 45", "observer_zenith: 80", r"bad.yaml:4:\d+.*0 to 75 deg"),
+                               ("observer_zenith: 45", "observer_zenit: 45", r"bad.yaml:4:\d+.*did you mean 'observer_zenith'"),
+                               ("air_lut: 1", "air_lut: 1\nsensor: ear", "no sensor 'ear'; give `sensor:` one of: eye"),
+                               ("observer_altitude_km: 3", "observer_altitude_km: -0.4", r"bad.yaml.*is not above the ground")):
+            self.assertIn(old, GRID)
+            (FOLDER / "bad.yaml").write_text(GRID.replace(old, new))
+            said_by_run = run("dirsig-render", "sim.yaml", "--air-lut", "bad.yaml", "-o", "bad", code=1)
+            self.assertRegex(said_by_run.replace("\n", " "), said)
+        (FOLDER / "bare.yaml").write_text(SIM.replace(f"atmosphere: {AIR}\n", ""))
+        self.assertIn("no real air", run("dirsig-render", "bare.yaml", "--air-lut", "grid.yaml", "-o", "bad", code=1))
+        self.assertFalse((FOLDER / "bad/air_lut.nc").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
