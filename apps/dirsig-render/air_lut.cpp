@@ -132,17 +132,6 @@ void report_limits(const AirSpec& air, const LutTable& table) {
   }
 }
 
-// Faults of a state are the grid's.
-template <class Make>
-auto located_in(const LutRequest& request, Make&& make) {
-  try {
-    return make();
-  } catch (const Error& e) {
-    if (!e.where().file.empty()) throw;
-    throw Error(request.text, e.message(), e.hint());
-  }
-}
-
 }  // namespace
 
 int run_air_lut(const RenderOptions& o, const Simulation& sim) {

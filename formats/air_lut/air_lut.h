@@ -20,6 +20,18 @@ struct LutRequest {
 
 // Error, located: unknown or missing keys, values out of their ranges or not ascending.
 LutRequest read_lut_request(const std::string& path);
+LutRequest parse_lut_request(std::string_view text, const std::string& file_name);
+
+// make(), whose faults are the grid's where they have no place of their own.
+template <class Make>
+auto located_in(const LutRequest& request, Make&& make) {
+  try {
+    return make();
+  } catch (const Error& e) {
+    if (!e.where().file.empty()) throw;
+    throw Error(request.text, e.message(), e.hint());
+  }
+}
 
 // States in their order; errors: one solution's differences (lut_difference), or empty lists.
 struct LutResult {

@@ -17,10 +17,7 @@ std::vector<double> ascending(const Params& p, const LutAxis& axis) {
   return values;
 }
 
-}  // namespace
-
-LutRequest read_lut_request(const std::string& path) {
-  const Params root = Params::parse_file(path);
+LutRequest request_of(const Params& root) {
   root.at("air_lut").as_integer(1, 1);
   LutRequest request;
   request.text = root.where();
@@ -32,7 +29,10 @@ LutRequest read_lut_request(const std::string& path) {
       request.where[a] = given->where();
     }
   }
-  root.at("solar_zenith");  // no default would be right
+  if (!root.find("solar_zenith")) {  // no default would be right
+    if (const auto near = root.misspelt("solar_zenith")) throw *near;
+    throw root.error("the key 'solar_zenith' is missing", "give the zenith angles of the sun, degrees");
+  }
   request.sensor = root.text("sensor", std::string());
   request.fineness.widest_um = 1e-3 * root.number_in("widest_bin_nm", 0, 1000, "nm", 0);
   request.fineness.streams = static_cast<int>(root.integer("streams", 4, 64, 16));
@@ -40,6 +40,13 @@ LutRequest read_lut_request(const std::string& path) {
   request.check = root.boolean("check", true);
   root.reject_unread();
   return request;
+}
+
+}  // namespace
+
+LutRequest read_lut_request(const std::string& path) { return request_of(Params::parse_file(path)); }
+LutRequest parse_lut_request(std::string_view text, const std::string& file_name) {
+  return request_of(Params::parse_text(text, file_name));
 }
 
 }  // namespace suite
