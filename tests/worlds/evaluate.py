@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 
 import judge
 from programs import Refused, cpu_seconds
-from relations import relation_of
+from relations import SECONDS, relation_of
 from rows import TABLE
 from world import draw_world
 
@@ -14,7 +14,7 @@ FLOOR = 0.1                    # of the level of light; times the tolerance 1e-5
 KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between its seeds
 LEAST_MORE = {2: 2, 3: 4}      # times the paths of the screening, however long it takes: means of few paths are not normal
 PILOT, MOST = 3, 64            # times the relation's paths
-SECONDS, START = 0.12, 0.04    # of CPU that the paths of a term take, and what starting takes
+START = 0.04                   # s of CPU that starting takes
 
 
 @dataclass
@@ -67,15 +67,15 @@ def pictures_of(programs, case, folder, seeds, factor=1, pilot=None):
     return [list(run) for run in zip(*terms)]
 
 
-def factor_of(programs, case, folder, seed, fixed):
-    """-> times the relation's paths that take about SECONDS a term, pictures of the first term if it took them."""
+def factor_of(programs, case, folder, seed, fixed, wanted=SECONDS):
+    """-> times the relation's paths that take about so many seconds a term, pictures of the first term if it took them."""
     if fixed:
         return fixed, None, 0.05
     programs.prepare(case.terms[0][1], os.path.join(folder, "term0"), PILOT)
     before = cpu_seconds()
     pilot = [programs.render(os.path.join(folder, "term0"), seed * 16)]
     spent = max(cpu_seconds() - before - START, 0.005)
-    factor = min(MOST, int(PILOT * SECONDS / spent))
+    factor = min(MOST, int(PILOT * wanted / spent))
     return (PILOT, pilot, spent / PILOT) if factor < 2 * PILOT else (factor, None, spent / PILOT)
 
 
@@ -87,9 +87,9 @@ def seconds_of_paths(programs, folder, world, seed, factor, seconds):
     return max((cpu_seconds() - before - seconds * factor) / (3 * factor), 1e-4)
 
 
-def judged(programs, case, folder, first_seed, fixed=None):
+def judged(programs, case, folder, first_seed, fixed=None, wanted=SECONDS):
     """-> Finding of the last step taken, which that was (4: fails), and the factor of its paths."""
-    factor, pilot, seconds = factor_of(programs, case, folder, first_seed, fixed)
+    factor, pilot, seconds = factor_of(programs, case, folder, first_seed, fixed, wanted)
     found = judge.screen(case, pictures_of(programs, case, folder, [first_seed], factor, pilot)[0])
     if found.p > judge.SCREEN:
         return found, 1, factor
@@ -117,7 +117,7 @@ def evaluate(programs, seed, relation, folder, fixed=None):
             result.status = "none"
         else:
             result.worlds, result.note = len(case.terms), case.note
-            run_case(programs, case, result, folder, seed, fixed)
+            run_case(programs, case, result, folder, seed, fixed, relation.seconds)
     except Refused as refused:
         result.status = "refused" if refused.code in (0, 1, 2) else "crash"
         result.where = refused.text
@@ -127,14 +127,14 @@ def evaluate(programs, seed, relation, folder, fixed=None):
     return result
 
 
-def run_case(programs, case, result, folder, seed, fixed):
+def run_case(programs, case, result, folder, seed, fixed, seconds):
     first = random.Random(f"paths {seed}").randrange(1, 10 ** 6)
     if case.exact:
         result.where = case.exact(programs, os.path.join(folder, "term0"), first)
         result.status = "fails" if result.where else "holds"
         result.p = 0.0 if result.where else 1.0
         return
-    found, step, result.factor = judged(programs, case, folder, first, fixed)
+    found, step, result.factor = judged(programs, case, folder, first, fixed, seconds)
     result.p, result.where, result.size, result.seen, result.score = found.p, found.where, found.size, found.seen, found.score
     result.step = min(step, 3)
     result.status = "fails" if step == 4 else "holds"
