@@ -14,6 +14,7 @@ FLOOR = 0.1                    # of the level of light; times the tolerance 1e-5
 KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between its seeds
 LEAST_MORE = {2: 2, 3: 4}      # times the paths of the screening, however long it takes: means of few paths are not normal
 PILOT, MOST = 3, 64            # times the relation's paths
+GROUNDLESS = 1e-2              # of the air below its own ground: its source is interpolated over all of the way there
 START = 0.04                   # s of CPU that starting takes
 
 
@@ -44,11 +45,16 @@ def draw(seed, relation, table=TABLE):
     return world, case_of(world, relation, seed)
 
 
+def groundless(world):
+    """Whether rays may run on below the ground that real air stands on: nothing ends them there."""
+    return "profile" in world.sim.get("atmosphere", {}) and "floor_none" in world.rows
+
+
 def case_of(world, relation, seed):
     case = relation.make(world.copy(), random.Random(f"relation {seed}"))
     if case:
         case.floor = FLOOR * world.facts["level"]
-        case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0))
+        case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0), GROUNDLESS if groundless(world) else 0)
     return case
 
 
