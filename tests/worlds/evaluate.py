@@ -15,6 +15,7 @@ KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between 
 LEAST_MORE = {2: 2, 3: 4}      # times the paths of the screening, however long it takes: means of few paths are not normal
 PILOT, MOST = 3, 64            # times the relation's paths
 GROUNDLESS = 1e-2              # of the air below its own ground: its source is interpolated over all of the way there
+BENT = 1e-2                    # of surfaces whose normals are turned by t: (1 - cos t) / 2 of what they scatter goes below them
 START = 0.04                   # s of CPU that starting takes
 
 
@@ -54,7 +55,8 @@ def case_of(world, relation, seed):
     case = relation.make(world.copy(), random.Random(f"relation {seed}"))
     if case:
         case.floor = FLOOR * world.facts["level"]
-        case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0), GROUNDLESS if groundless(world) else 0)
+        case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0), GROUNDLESS if groundless(world) else 0,
+                             BENT if relation.name == "furnace" and world.rows & {"normal_map", "bump", "mesh_smooth"} else 0)
     return case
 
 
