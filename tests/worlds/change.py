@@ -144,7 +144,8 @@ def turned(v, phi):
 def rigid_motion(world, rng):
     """The whole world with lights and sensors, moved and turned about the vertical: the same pictures."""
     sim, kinds = world.sim, {s["kind"] for s in world.sim["sensors"]}
-    level = kinds & {"orthographic", "fisheye"}
+    draped = any(m["type"] == "normal" and m["projection"] == "drape" for m in world.scene["maps"].values())  # its axes are the scene's
+    level = draped or kinds & {"orthographic", "fisheye"}
     degrees = 0 if level else rng.choice((90, 180)) if "table" in sim.get("sky", {}) else round(rng.uniform(-170, 170), 3)
     phi = math.radians(degrees)
     shift = [round(rng.uniform(-50, 50), 3), round(rng.uniform(-50, 50), 3), 0 if "atmosphere" in sim else round(rng.uniform(-3, 30), 3)]
@@ -281,6 +282,8 @@ def split(world, rng):
         m = scene["materials"].get(o.get("material"), {})
         bends = None if "model" in m or "map" in m else False   # None: opaque; False: a boundary
         if "inside" in m and "model" in m or m.get("model") in ("dielectric", "ggx_dielectric"):
+            continue
+        if name.startswith("room"):  # seen from within: a half of it has a wall in the middle
             continue
         parts = halves(o, bends)
         if parts and "maps" not in m:

@@ -54,9 +54,11 @@ def other_sensor(world, rng):
         return world, partner, "framing camera and platform", {}
     keys = {k: camera[k] for k in ("name", "bands", "spectral_error", "truth", "time_s", "integration_time_s") if k in camera}
     paths = camera["paths"] * 32
+    aside = [0.0123, 0.0171, 0]  # a camera that looks at a round number sees both sides of a map's step in one pixel, the point one
     if camera["kind"] == "frame_camera":
-        place, look = camera["position_m"], unit([b - a for a, b in zip(camera["position_m"], camera["look_at_m"])])
-        one = {**camera, "columns": 1, "rows": 1, "pitch_um": 1, "focal_length_mm": 1000, "paths": paths}
+        target = [c + a for c, a in zip(camera["look_at_m"], aside)]
+        place, look = camera["position_m"], unit([b - a for a, b in zip(camera["position_m"], target)])
+        one = {**camera, "look_at_m": target, "columns": 1, "rows": 1, "pitch_um": 0.1, "focal_length_mm": min(max(1000, 100 * math.dist(place, target)), 1e6), "paths": paths}
     else:
         place, look = [*camera["center_m"], camera["height_m"]], [0, 0, -1]
         one = {**camera, "columns": 1, "rows": 1, "gsd_m": 1e-5, "paths": paths}

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 
 import judge
 from programs import Refused, cpu_seconds
-from relations import relation_of
+from relations import SECONDS, relation_of
 from rows import TABLE
 from world import draw_world
 
@@ -14,7 +14,9 @@ FLOOR = 0.1                    # of the level of light; times the tolerance 1e-5
 KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between its seeds
 LEAST_MORE = {2: 2, 3: 4}      # times the paths of the screening, however long it takes: means of few paths are not normal
 PILOT, MOST = 3, 64            # times the relation's paths
-SECONDS, START = 0.12, 0.04    # of CPU that the paths of a term take, and what starting takes
+GROUNDLESS = 1e-2              # of the air below its own ground: its source is interpolated over all of the way there
+BENT = 1e-2                    # of surfaces whose normals are turned by t: (1 - cos t) / 2 of what they scatter goes below them
+START = 0.04                   # s of CPU that starting takes
 
 
 @dataclass
@@ -44,11 +46,17 @@ def draw(seed, relation, table=TABLE):
     return world, case_of(world, relation, seed)
 
 
+def groundless(world):
+    """Whether rays may run on below the ground that real air stands on: nothing ends them there."""
+    return "profile" in world.sim.get("atmosphere", {}) and "floor_none" in world.rows
+
+
 def case_of(world, relation, seed):
     case = relation.make(world.copy(), random.Random(f"relation {seed}"))
     if case:
         case.floor = FLOOR * world.facts["level"]
-        case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0))
+        case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0), GROUNDLESS if groundless(world) else 0,
+                             BENT if relation.name == "furnace" and world.rows & {"normal_map", "bump", "mesh_smooth"} else 0)
     return case
 
 
@@ -67,15 +75,15 @@ def pictures_of(programs, case, folder, seeds, factor=1, pilot=None):
     return [list(run) for run in zip(*terms)]
 
 
-def factor_of(programs, case, folder, seed, fixed):
-    """-> times the relation's paths that take about SECONDS a term, pictures of the first term if it took them."""
+def factor_of(programs, case, folder, seed, fixed, wanted=SECONDS):
+    """-> times the relation's paths that take about so many seconds a term, pictures of the first term if it took them."""
     if fixed:
         return fixed, None, 0.05
     programs.prepare(case.terms[0][1], os.path.join(folder, "term0"), PILOT)
     before = cpu_seconds()
     pilot = [programs.render(os.path.join(folder, "term0"), seed * 16)]
     spent = max(cpu_seconds() - before - START, 0.005)
-    factor = min(MOST, int(PILOT * SECONDS / spent))
+    factor = min(MOST, int(PILOT * wanted / spent))
     return (PILOT, pilot, spent / PILOT) if factor < 2 * PILOT else (factor, None, spent / PILOT)
 
 
@@ -87,9 +95,9 @@ def seconds_of_paths(programs, folder, world, seed, factor, seconds):
     return max((cpu_seconds() - before - seconds * factor) / (3 * factor), 1e-4)
 
 
-def judged(programs, case, folder, first_seed, fixed=None):
+def judged(programs, case, folder, first_seed, fixed=None, wanted=SECONDS):
     """-> Finding of the last step taken, which that was (4: fails), and the factor of its paths."""
-    factor, pilot, seconds = factor_of(programs, case, folder, first_seed, fixed)
+    factor, pilot, seconds = factor_of(programs, case, folder, first_seed, fixed, wanted)
     found = judge.screen(case, pictures_of(programs, case, folder, [first_seed], factor, pilot)[0])
     if found.p > judge.SCREEN:
         return found, 1, factor
@@ -117,7 +125,7 @@ def evaluate(programs, seed, relation, folder, fixed=None):
             result.status = "none"
         else:
             result.worlds, result.note = len(case.terms), case.note
-            run_case(programs, case, result, folder, seed, fixed)
+            run_case(programs, case, result, folder, seed, fixed, relation.seconds)
     except Refused as refused:
         result.status = "refused" if refused.code in (0, 1, 2) else "crash"
         result.where = refused.text
@@ -127,14 +135,14 @@ def evaluate(programs, seed, relation, folder, fixed=None):
     return result
 
 
-def run_case(programs, case, result, folder, seed, fixed):
+def run_case(programs, case, result, folder, seed, fixed, seconds):
     first = random.Random(f"paths {seed}").randrange(1, 10 ** 6)
     if case.exact:
         result.where = case.exact(programs, os.path.join(folder, "term0"), first)
         result.status = "fails" if result.where else "holds"
         result.p = 0.0 if result.where else 1.0
         return
-    found, step, result.factor = judged(programs, case, folder, first, fixed)
+    found, step, result.factor = judged(programs, case, folder, first, fixed, seconds)
     result.p, result.where, result.size, result.seen, result.score = found.p, found.where, found.size, found.seen, found.score
     result.step = min(step, 3)
     result.status = "fails" if step == 4 else "holds"

@@ -24,6 +24,9 @@ class Case:
     exact: Optional[Callable] = None     # in place of the sum: exact(programs, folder, seed) -> text of what is wrong, or ''
 
 
+SECONDS = 0.12  # of CPU that the paths of a term take
+
+
 @dataclass(frozen=True)
 class Relation:
     name: str
@@ -31,6 +34,7 @@ class Relation:
     weight: float = 1
     traits: FrozenSet[str] = field(default_factory=frozenset)
     paths: int = 4
+    seconds: float = SECONDS
 
 
 def pixels_of(sensor):
@@ -152,7 +156,7 @@ def frozen(*traits):
 
 
 RELATIONS = {r.name: r for r in (
-    Relation("furnace", furnace, 5, frozen("furnace")),
+    Relation("furnace", furnace, 5, frozen("furnace"), seconds=2 * SECONDS),
     Relation("body_of_nothing", same_as(change.body_of_nothing), 4),
     Relation("body_of_the_same", same_as(change.body_of_the_same), 2.5, frozen("wants_media")),
     Relation("bystander", same_as(change.bystander), 2),
@@ -167,7 +171,7 @@ RELATIONS = {r.name: r for r in (
     Relation("channels", channels, 1, frozen("wants_camera")),
     Relation("sensors_agree", sensors_agree, 2, frozen("wants_camera")),
     Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "moved", "still_world", "no_room", "no_profile")),
-    Relation("reciprocity", reciprocity, 2, frozen("reciprocal", "still_world", "no_profile")),
+    Relation("reciprocity", reciprocity, 2, frozen("reciprocal", "still_world", "no_profile"), seconds=5 * SECONDS),
     Relation("same_bytes", same_bytes, 1),
 )}
 
