@@ -1,0 +1,59 @@
+"""A worker: `python -m remote_scenes.campaign.worker CAMPAIGN FOLDER` makes the samples whose numbers it reads, a line each, and answers with a
+line of JSON each. It ends when nobody writes any longer, and so does not outlive who started it."""
+from __future__ import annotations
+
+import json
+import os
+import resource
+import sys
+import time
+from pathlib import Path
+
+from ..errors import ProgramError
+from .campaign import read_campaign
+from .sample import Maker
+from .text import CampaignError
+
+
+def main(arguments: list[str]) -> int:
+    """0 when the input ended."""
+    campaign, folder, version = arguments
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # whatever is printed is no answer
+    maker = Maker(read_campaign(campaign), Path(folder), version)
+    for line in sys.stdin:
+        sample = int(line)
+        begun, cpu = time.monotonic(), _cpu_s()
+        answer: dict[str, object] = {"sample": sample}
+        try:
+            maker.make(sample)
+        except (CampaignError, ProgramError, OSError) as problem:
+            answer["error"] = refusal(sample, problem)
+        answer |= {"seconds": time.monotonic() - begun, "cpu_s": _cpu_s() - cpu, "rss_kb": _rss_kb()}
+        print(json.dumps(answer), file=answers, flush=True)
+    return 0
+
+
+def refusal(sample: int, problem: Exception) -> str:
+    """One message of what stopped a sample."""
+    if isinstance(problem, CampaignError):
+        return str(problem)
+    if isinstance(problem, OSError):
+        return f"error: sample {sample} cannot be written: {problem}"
+    return f"error: sample {sample} was refused: {str(problem).splitlines()[0]}"
+
+
+def _cpu_s() -> float:
+    return sum(u.ru_utime + u.ru_stime for u in (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)))
+
+
+def _rss_kb() -> int:
+    """What is resident now, not at most."""
+    try:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") // 1024
+    except OSError:
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
