@@ -13,6 +13,7 @@ _JOE_KUO = ((1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)), (3, 2, (1, 1, 1)), 
             (5, 2, (1, 1, 5, 5, 17)), (5, 4, (1, 1, 5, 5, 5)), (5, 7, (1, 1, 7, 11, 19)))
 SOBOL_DIMENSIONS = len(_JOE_KUO) + 1
 _BITS = 32
+_SORTED = 1 << 16
 
 
 def hashed(*parts: object) -> int:
@@ -27,9 +28,12 @@ def unit(*parts: object) -> float:
 
 
 def shuffled(index: int, count: int, *parts: object) -> int:
-    """Where `index` goes in a permutation of 0 to count - 1 that the parts choose: a Feistel network of four rounds, walked until it is within
-    the range (J. Black and P. Rogaway, "Ciphers with arbitrary finite domains", 2002). Needs no memory for large counts."""
-    half = max(1, ((count - 1).bit_length() + 1) // 2)
+    """Where `index` goes in a permutation of 0 to count - 1 that the parts choose. Large ones need no memory: a Feistel network of four rounds,
+    walked until it is within the range (J. Black and P. Rogaway, "Ciphers with arbitrary finite domains", 2002); in small ones that is no
+    good random permutation, so that their numbers are put in the order of their hashes."""
+    if count <= _SORTED:
+        return _order(count, parts)[index]
+    half = ((count - 1).bit_length() + 1) // 2
     mask = (1 << half) - 1
     while True:
         left, right = index >> half, index & mask
@@ -38,6 +42,11 @@ def shuffled(index: int, count: int, *parts: object) -> int:
         index = left << half | right
         if index < count:
             return index
+
+
+@lru_cache(maxsize=64)
+def _order(count: int, parts: tuple[object, ...]) -> tuple[int, ...]:
+    return tuple(sorted(range(count), key=lambda i: hashed("order", i, *parts)))
 
 
 @lru_cache(maxsize=None)

@@ -102,7 +102,7 @@ def _measured(dataset: xr.Dataset, mask: npt.NDArray[np.bool_]) -> dict[str, Any
     bands = [str(b) for b in dataset["band"].values]
     out: dict[str, Any] = {"spectrum": dict(zip(bands, mean.tolist())), "spectrum_error": dict(zip(bands, error.tolist())),
                            "snr": dict(zip(bands, snr.tolist()))}
-    for key, name in (("range_m", "truth_range"), ("incidence_deg", "truth_incidence"), ("temperature_k", "truth_temperature")):
+    for key, name in (("range_m", "truth_range"), ("incidence_deg", "truth_incidence_angle"), ("temperature_k", "truth_temperature")):
         if name in dataset:
             out[key] = _mean(dataset[name].values[mask])
     if "truth_sun_visibility" in dataset:

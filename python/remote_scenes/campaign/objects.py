@@ -31,7 +31,8 @@ class Item:
 
 @dataclass(frozen=True)
 class Group:
-    """Objects of one kind of place. whole: footprints lie within the region as a whole; height_m: None = on whatever is below."""
+    """Objects of one kind of place. whole: footprints lie within the region as a whole; height: None = on what is first met from above, of
+    the whole scene or of the placements of `on` alone."""
 
     name: str
     items: tuple[Item, ...]
@@ -41,6 +42,7 @@ class Group:
     spacing_m: float
     whole: bool
     height: Rule | None
+    on: str | None
     attempts: int
     node: Node
 
@@ -57,7 +59,7 @@ def read_objects(node: Node | None, scene: dict[str, Any], variables: Variables,
 
 
 def _group(name: str, node: Node, scene: dict[str, Any], variables: Variables, frame: Frame | None, folder: Path) -> Group:
-    keys = node.map(("catalogue", "count", "where", "heading_deg", "spacing_m", "whole", "height_m", "attempts"), ("catalogue", "count", "where"))
+    keys = node.map(("catalogue", "count", "where", "heading_deg", "spacing_m", "whole", "height_m", "on", "attempts"), ("catalogue", "count", "where"))
     entries = keys["catalogue"].map()
     if not entries:
         raise keys["catalogue"].error("the catalogue is empty", "at least one entry, as `car: {place: NAME}`")
@@ -68,8 +70,14 @@ def _group(name: str, node: Node, scene: dict[str, Any], variables: Variables, f
     spacing = keys["spacing_m"].number(0, 1e6) if "spacing_m" in keys else 0.0
     whole = keys["whole"].flag() if "whole" in keys else True
     attempts = keys["attempts"].integer(1, 1_000_000) if "attempts" in keys else 1000
+    on = keys["on"].text() if "on" in keys else None
+    stood_on = [p["place"] for p in scene["world"] or () if isinstance(p, dict) and "place" in p]
+    if on is not None and on not in stood_on:
+        raise keys["on"].error(f"the scene's world places no '{on}'", near(on, dict.fromkeys(stood_on)))
+    if on is not None and "height_m" in keys:
+        raise keys["on"].error("'on' and 'height_m' exclude each other")
     return Group(name, items, rules["count"], read_region(keys["where"], frame, folder), rules.get("heading_deg"), spacing, whole,
-                 rules.get("height_m"), attempts, node)
+                 rules.get("height_m"), on, attempts, node)
 
 
 def _item(name: str, node: Node, scene: dict[str, Any], variables: Variables) -> Item:

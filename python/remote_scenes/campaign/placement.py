@@ -96,9 +96,9 @@ def _circle(corners: Sequence[Point]) -> tuple[float, Point]:
 
 
 def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bounds],
-              ground: Callable[[float, float], float | None]) -> list[Placed]:
-    """The objects of a sample. bounds: of an object or group of the scene in its own frame, m; ground: height of what is below a place, m, or
-    None. CampaignError with the place in the text where an object finds no room."""
+              ground: Callable[[str | None, float, float], float | None]) -> list[Placed]:
+    """The objects of a sample. bounds: of an object or group of the scene in its own frame, m; ground: height of what is below a place, m, of
+    all or of the placements of one name, or None. CampaignError with the place in the text where an object finds no room."""
     taken, out = _Taken(), []
     for group in groups:
         for number in range(_count(group, draw)):
@@ -108,7 +108,7 @@ def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bound
             materials = {key: str(rule.value(context)) for key, rule in item.materials.items()}
             box = bounds(item.place)
             x, y, heading = _find(group, number, context, draw, box, scale, taken)
-            z = _number(group.height, context) if group.height else ground(x, y)
+            z = _number(group.height, context) if group.height else ground(group.on, x, y)
             if z is None:
                 raise group.node.error(f"sample {draw.sample}: nothing is below object {number} of '{group.name}' at ({x:.2f}, {y:.2f})",
                                        "ground there, or a `height_m`")

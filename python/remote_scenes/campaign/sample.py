@@ -24,7 +24,7 @@ from .labels import Sight, degrees, label_image, rounded
 from .placement import Bounds, Placed, place_all
 from .shared import Shared, prepare_tree, with_files, write_tree
 from .text import CampaignError
-from .things import item_scene, placed_scene
+from .things import ground_scene, item_scene, placed_scene
 from .variables import Draw
 
 _TRUTH = ("tag", "tag_fraction", "instance", "range")
@@ -94,7 +94,8 @@ class Maker:
         things = None
         if campaign.groups:
             with self._opened(backdrop) as opened:
-                placed = place_all(campaign.groups, draw, lambda place: self._bounds(scene, place), lambda x, y: _ground(opened, x, y))
+                placed = place_all(campaign.groups, draw, lambda place: self._bounds(scene, place), lambda on, x, y: _ground(
+                    self.shared.open(self.shared.prepare(ground_scene(scene, on))) if on else opened, x, y))
         if placed:
             things = folder / "things.h5"
             prepare_tree(placed_scene(scene, placed), things, self._search)
@@ -178,8 +179,10 @@ def _corners(camera: Camera, scene: TracedScene, frame: Frame) -> list[list[str]
 
 def _ground(scene: TracedScene, x: float, y: float) -> float | None:
     """The height of what is first met from above."""
-    hits = scene.trace([x, y, HIGHEST_M], [0, 0, -1])
-    return float(hits.position[2]) if bool(hits.hit) else None
+    top = float(scene.bounds[1, 2])
+    hits = scene.trace([x, y, top + 1 if abs(top) < HIGHEST_M else HIGHEST_M], [0, 0, -1])
+    # To the micrometre: what is left of the ray's length is no height.
+    return round(float(hits.position[2]), 6) + 0.0 if bool(hits.hit) else None
 
 
 def _render(work: Path) -> list[str]:

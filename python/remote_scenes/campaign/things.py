@@ -13,11 +13,20 @@ _FRAME = ("scene", "origin", "epoch", "times_s", "windows_um")
 
 
 def item_scene(scene: Mapping[str, Any], place: str) -> dict[str, Any]:
-    """One object or group alone, where it is defined. What it is made of does not matter to its shape, except for holes, so that samples with
-    other materials share it."""
+    """One object or group alone, where it is defined."""
+    return _with_needs(_shapes(scene), {}, {}, [{"place": place, "tag": "item"}])
+
+
+def ground_scene(scene: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The placements in the world of one object or group alone."""
+    return _with_needs(_shapes(scene), {}, {}, [p for p in scene["world"] if isinstance(p, dict) and p.get("place") == name])
+
+
+def _shapes(scene: Mapping[str, Any]) -> dict[str, Any]:
+    """What something is made of does not matter to its shape, except for holes, so that samples with other materials share it."""
     materials = {name: m if isinstance(m, dict) and ("map" in m or "maps" in m) else {"model": "lambert", "reflectance": 0.5}
                  for name, m in scene.get("materials", {}).items()}
-    return _with_needs({**scene, "materials": materials}, {}, {}, [{"place": place, "tag": "item"}])
+    return {**scene, "materials": materials}
 
 
 def placed_scene(scene: Mapping[str, Any], placed: Sequence[Placed]) -> dict[str, Any]:
