@@ -15,7 +15,8 @@ from .figures import statistics
 
 _CONTEXT: dict[str, Any] = {
     "@language": "en", "@vocab": "https://schema.org/", "cr": "http://mlcommons.org/croissant/", "sc": "https://schema.org/",
-    "dct": "http://purl.org/dc/terms/", "rs": "urn:remote-scenes:campaign:", "citeAs": "cr:citeAs", "column": "cr:column", "conformsTo": "dct:conformsTo",
+    "dct": "http://purl.org/dc/terms/", "rs": "urn:remote-scenes:campaign:", "rai": "http://mlcommons.org/croissant/RAI/", "equivalentProperty": "cr:equivalentProperty", "samplingRate": "cr:samplingRate",
+    "citeAs": "cr:citeAs", "column": "cr:column", "conformsTo": "dct:conformsTo",
     "data": {"@id": "cr:data", "@type": "@json"}, "dataType": {"@id": "cr:dataType", "@type": "@vocab"}, "extract": "cr:extract", "field": "cr:field",
     "fileObject": "cr:fileObject", "fileProperty": "cr:fileProperty", "fileSet": "cr:fileSet", "format": "cr:format", "includes": "cr:includes",
     "isLiveDataset": "cr:isLiveDataset", "jsonPath": "cr:jsonPath", "key": "cr:key", "md5": "cr:md5", "parentField": "cr:parentField", "path": "cr:path",
@@ -31,11 +32,9 @@ def write_croissant(campaign: Campaign, folder: Path, version: str) -> None:
         "description": campaign.description or campaign.name, "version": "1.0.0",
         "url": "urn:remote-scenes:campaign:" + campaign.digest, "isLiveDataset": False,
         "distribution": [
-            {"@type": "cr:FileObject", "@id": "dataset", "name": "dataset", "description": "the dataset's folder", "contentUrl": ".",
-             "encodingFormat": "https://github.com/mlcommons/croissant/issues/80", "sha256": campaign.digest},
-            {"@type": "cr:FileSet", "@id": "pictures", "name": "pictures", "containedIn": {"@id": "dataset"}, "encodingFormat": "image/png",
+            {"@type": "cr:FileSet", "@id": "pictures", "name": "pictures", "encodingFormat": "image/png",
              "includes": "samples/*/*.png"},
-            {"@type": "cr:FileSet", "@id": "records", "name": "records", "containedIn": {"@id": "dataset"}, "encodingFormat": "application/json",
+            {"@type": "cr:FileSet", "@id": "records", "name": "records", "encodingFormat": "application/json",
              "includes": "samples/*/sample.json"}],
         "recordSet": [
             {"@type": "cr:RecordSet", "@id": "images", "name": "images", "field": [
