@@ -80,6 +80,8 @@ def _run(options: argparse.Namespace) -> int:
         outcome = run(campaign, folder, workers=options.workers, shard=options.shard, tell=None if options.quiet else _progress)
         tally = outcome.tally
         print(f"{tally.made} samples made, {tally.there} were there; {tally.cpu_s:.4g} s of the processor" if tally.made else f"{tally.there} samples were there")
+        if len(tally.rss_kb) > 1:
+            print(f"memory of a worker: {tally.rss_kb[0] / 1024:.0f} MiB after its first sample, at most {max(tally.rss_kb) / 1024:.0f} MiB")
         print(f"wrote {folder}" if outcome.complete else f"{folder} is not complete: other shards are to be made, then this command once more without --shard")
     return 0
 

@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Mapping
 
 from ..tree import FileName
 from .draws import hashed
@@ -55,9 +55,9 @@ class Campaign:
         """Whether samples have scenes in common: nothing that the scene's text gets is continuous."""
         return not any(name.startswith("scene.") and self.variables.continuous(name) for name in self.variables.rules)
 
-    def draw(self, sample: int) -> Draw:
-        """All variables of a sample."""
-        values = self.variables.values(self.seed, sample, self.samples)
+    def draw(self, sample: int, forced: Mapping[str, Any] | None = None) -> Draw:
+        """All variables of a sample; forced: values in place of some draws."""
+        values = self.variables.values(self.seed, sample, self.samples, forced)
         return Draw(self.variables, self.seed, sample, self.samples, values)
 
     def texts(self, draw: Draw) -> tuple[dict[str, Any], dict[str, Any]]:

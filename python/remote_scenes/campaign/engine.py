@@ -17,10 +17,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Callable, Iterable
 
+from ..errors import ProgramError
 from ..programs import version as program_version
 from .campaign import Campaign, as_json
-from .sample import Maker
-from .text import CampaignError
+from .exports import finished
+from .sample import Maker, refusal
+from .text import CampaignError, Refused
 
 DEATHS = 3
 Tell = Callable[[str], None]
@@ -45,12 +47,13 @@ def prepare_folder(campaign: Campaign, folder: Path) -> str:
     wanted = {"campaign": campaign.digest, "name": campaign.name, "version": version, "samples": campaign.samples, "seed": campaign.seed}
     record = folder / "campaign.json"
     try:
-        if record.exists():
+        # A text may be mended as long as no sample was made of it.
+        if record.exists() and (folder / "samples").is_dir() and finished(folder):
             there = json.loads(record.read_text(encoding="utf-8"))
             for key, what in (("campaign", "a campaign with other texts"), ("version", f"version {there.get('version')} of the programs")):
                 if there.get(key) != wanted[key]:
                     raise CampaignError(f"it holds samples of {what}", "give another folder", str(folder))
-        elif folder.exists() and any(folder.iterdir()):
+        elif not record.exists() and folder.exists() and any(folder.iterdir()):
             raise CampaignError("it holds something else", "give an empty or new folder", str(folder))
         (folder / "samples").mkdir(parents=True, exist_ok=True)
         for source in (campaign.path, campaign.scene_path, campaign.simulation_path):
@@ -99,7 +102,10 @@ def run_samples(campaign: Campaign, folder: Path, numbers: Iterable[int], worker
             wanted.append(number)
     if workers == 0:
         for number in wanted:
-            maker.make(number)
+            try:
+                maker.make(number)
+            except (ProgramError, OSError) as problem:
+                raise Refused(refusal(number, problem)) from None
             tally.made += 1
     elif wanted:
         _Crew(campaign, folder, version, tell, tally, deque(wanted)).work(min(workers, len(wanted)))
@@ -195,14 +201,6 @@ class _Crew:
         self._tell(f"a worker ended with {worker.returncode} at sample {sample}, which is made again")
         self._waiting.appendleft(sample)
         self._start(selector)
-
-
-class Refused(CampaignError):
-    """A refusal whose message is whole already."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
-        self.args = (text,)
 
 
 __all__ = ["Tally", "of_shard", "prepare_folder", "run_samples", "write_whole"]

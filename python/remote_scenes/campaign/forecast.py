@@ -2,7 +2,6 @@
 all ranges."""
 from __future__ import annotations
 
-import copy
 import os
 import tempfile
 import warnings
@@ -10,15 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Sequence
 
-from ..errors import InputError
+from ..errors import InputError, ProgramError
 from ..programs import run_program
 from .campaign import Campaign
 from .exports import images
-from .places import put
-from .sample import Maker
-from .shared import with_files, write_tree
+from .sample import Maker, refusal
+from .shared import UNUSED, with_files, write_tree
 from .figures import statistics
-from .text import CampaignError
+from .text import CampaignError, Refused
 
 PILOTS = 2
 
@@ -56,20 +54,43 @@ def forecast(campaign: Campaign, version: str, pilots: int = PILOTS) -> Forecast
 
 
 def check_ends(campaign: Campaign, version: str) -> None:
-    """Has the programs check the first sample's texts with every variable at both ends of its range. CampaignError: a distribution leaves the range
-    of its key, with the line of the distribution and what the program says."""
+    """Has the programs check the first sample's texts with every variable at both ends of its range, and what refers to it. CampaignError: a
+    distribution leaves the range of a key, with the line of the distribution and what the program says."""
     with tempfile.TemporaryDirectory(prefix="campaign-") as name:
         folder = Path(name)
-        drawn = Maker(campaign, folder, version).draw(0, folder)
-        simulation = {**with_files(drawn.simulation, campaign.simulation_path.parent)}
+        _check_template(campaign)
+        try:
+            drawn = Maker(campaign, folder, version).draw(0, folder)
+        except ProgramError as problem:
+            raise Refused(refusal(0, problem)) from None
+        if said := _refused("dirsig-render", folder, campaign, "simulation.yaml"):
+            raise CampaignError(f"the first sample is refused: {said}", file=str(campaign.simulation_path))
+        # Parts that do not come from the two texts: the prepared scenes, and truth that labels want.
+        parts = {key: drawn.simulation[key] for key in ("scenes",)}
+        scene, simulation = campaign.texts(campaign.draw(0))
         for key, rule in campaign.variables.rules.items():
-            text, dot, place = key.partition(".")
-            for value in _ends(rule.ends) if dot else ():
-                tree = copy.deepcopy(drawn.scene if text == "scene" else simulation)
-                put(tree, place, value)
-                write_tree(tree, folder / "checked.yaml")
-                if said := _refused(text, folder, campaign):
-                    raise rule.node.error(f"'{key}' of {value!r}, which this distribution reaches, is refused: {said}", "a narrower distribution")
+            for value in _ends(rule.ends):
+                try:
+                    texts = campaign.texts(campaign.draw(0, {key: value}))
+                except CampaignError:
+                    continue  # another variable has no range then, which its own sample would say
+                for text, before, tree, program in (("scene", scene, texts[0], "scene-prep"), ("simulation", simulation, texts[1], "dirsig-render")):
+                    if tree == before:
+                        continue
+                    whole = tree if text == "scene" else {**parts, **{k: v for k, v in with_files(tree, campaign.simulation_path.parent).items() if k != "scene"}}
+                    write_tree(whole, folder / "checked.yaml")
+                    if said := _refused(program, folder, campaign):
+                        raise rule.node.error(f"'{key}' of {value!r}, which this distribution reaches, is refused: {said}", "a narrower distribution")
+
+
+def _check_template(campaign: Campaign) -> None:
+    """The scene's text as it stands, so that what is wrong there is said with its own line."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            run_program("scene-prep", [campaign.scene_path, "-q", "-j", "1", *UNUSED])
+    except InputError as refused:
+        raise CampaignError(refused.message, refused.hint, refused.file or str(campaign.scene_path), refused.line, refused.column) from None
 
 
 def _ends(values: Sequence[Any]) -> list[Any]:
@@ -79,16 +100,16 @@ def _ends(values: Sequence[Any]) -> list[Any]:
     return [v for i, v in enumerate(values) if v not in values[:i]]
 
 
-def _refused(text: str, folder: Path, campaign: Campaign) -> str:
+def _refused(program: str, folder: Path, campaign: Campaign, text: str = "checked.yaml") -> str:
     """What the program says; empty when it takes the text."""
     search = campaign.scene_path.parent.resolve()
-    arguments = ["checked.yaml", "--path", search, "-q", "--mute", "SP103", "--mute", "SP403"] if text == "scene" else ["checked.yaml", "--dry-run", "-q"]
+    arguments = [text, "--path", search, "-q", *UNUSED] if program == "scene-prep" else [text, "--dry-run", "-q"]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            run_program("scene-prep" if text == "scene" else "dirsig-render", arguments, cwd=folder)
+            run_program(program, arguments, cwd=folder)
         except InputError as refused:
-            return refused.message or str(refused).splitlines()[0]
+            return (refused.message or str(refused).splitlines()[0]) + (f" (at {refused.key})" if refused.key else "")
     return ""
 
 

@@ -105,6 +105,8 @@ def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bound
             context = ObjectDraw(draw, group.name, number)
             item = _item(group, context)
             scale = _number(item.scale, context) if item.scale else 1.0
+            if not 1e-6 <= scale <= 1e6:
+                raise item.node.error(f"sample {draw.sample}: the scale {scale:g} is out of range", "1e-06 to 1e+06")
             materials = {key: str(rule.value(context)) for key, rule in item.materials.items()}
             box = bounds(item.place)
             x, y, heading = _find(group, number, context, draw, box, scale, taken)

@@ -213,3 +213,12 @@ def _about(name: str, dataset: xr.Dataset) -> dict[str, Any]:
 def _median(values: Any) -> float:
     known = sorted(v for v in values.ravel().tolist() if v == v)
     return float(known[len(known) // 2]) if known else float("nan")
+
+
+def refusal(sample: int, problem: Exception) -> str:
+    """One message of what stopped a sample."""
+    if isinstance(problem, CampaignError):
+        return str(problem)
+    if isinstance(problem, OSError):
+        return f"error: sample {sample} cannot be written: {problem}"
+    return f"error: sample {sample} was refused: {str(problem).splitlines()[0]}; `--texts {sample}` writes its texts"

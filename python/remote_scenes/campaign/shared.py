@@ -17,6 +17,10 @@ from .campaign import as_json
 from .text import leaves
 
 
+UNUSED = ("--mute", "SP103", "--mute", "SP403")
+"""What a catalogue offers need not stand in every scene: unused materials, objects and groups are no news."""
+
+
 class _Dumper(yaml.SafeDumper):
     def ignore_aliases(self, data: Any) -> bool:
         return True
@@ -106,7 +110,6 @@ def prepare_tree(scene: dict[str, Any], path: Path, search: Path) -> None:
     text = path.with_suffix(".yaml")
     try:
         write_tree(scene, text)
-        # What a catalogue offers need not stand in every scene: unused materials, objects and groups are no news.
-        run_program("scene-prep", [text, "-o", path, "--path", search, "-q", "-j", "1", "--mute", "SP103", "--mute", "SP403"])
+        run_program("scene-prep", [text, "-o", path, "--path", search, "-q", "-j", "1", *UNUSED])
     finally:
         text.unlink(missing_ok=True)

@@ -30,6 +30,14 @@ class CampaignError(ValueError):
         super().__init__((f"{place}: " if file else "") + f"error: {message}" + (f"; {hint}" if hint else ""))
 
 
+class Refused(CampaignError):
+    """A refusal whose message is whole already."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.args = (text,)
+
+
 def near(name: str, known: Iterable[str]) -> str:
     """A hint: the nearest known name, else all of them."""
     names = [str(k) for k in known]

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Mapping
 
 from .distributions import Rule, number_of, read_rule
 from .draws import SOBOL_DIMENSIONS, unit
@@ -24,11 +24,13 @@ class Variables:
         rule = self.rules[name]
         return rule.continuous or any(self.continuous(other) for other, _ in rule.names)
 
-    def values(self, seed: int, sample: int, samples: int) -> dict[str, Any]:
-        """The value of every variable, in the order of the text. samples: of the whole campaign (a Latin hypercube needs it)."""
+    def values(self, seed: int, sample: int, samples: int, forced: Mapping[str, Any] | None = None) -> dict[str, Any]:
+        """The value of every variable, in the order of the text. samples: of the whole campaign (a Latin hypercube needs it); forced: values in
+        place of draws, which others see that refer to them."""
         drawn = Draw(self, seed, sample, samples)
+        given = forced or {}
         for name in self.ordered:
-            drawn.known[name] = self.rules[name].value(drawn)
+            drawn.known[name] = given[name] if name in given else self.rules[name].value(drawn)
         return {name: drawn.known[name] for name in self.rules}
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import os
 import resource
+import signal
 import sys
 import time
 from pathlib import Path
 
 from ..errors import ProgramError
 from .campaign import read_campaign
-from .sample import Maker
+from .sample import Maker, refusal
 from .text import CampaignError
 
 
@@ -20,6 +21,9 @@ def main(arguments: list[str]) -> int:
     campaign, folder, version = arguments
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever is printed is no answer
+    # Ctrl-C is for who started it; a SIGTERM ends the program that runs, and takes away what is unfinished.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     maker = Maker(read_campaign(campaign), Path(folder), version)
     for line in sys.stdin:
         sample = int(line)
@@ -32,15 +36,6 @@ def main(arguments: list[str]) -> int:
         answer |= {"seconds": time.monotonic() - begun, "cpu_s": _cpu_s() - cpu, "rss_kb": _rss_kb()}
         print(json.dumps(answer), file=answers, flush=True)
     return 0
-
-
-def refusal(sample: int, problem: Exception) -> str:
-    """One message of what stopped a sample."""
-    if isinstance(problem, CampaignError):
-        return str(problem)
-    if isinstance(problem, OSError):
-        return f"error: sample {sample} cannot be written: {problem}"
-    return f"error: sample {sample} was refused: {str(problem).splitlines()[0]}"
 
 
 def _cpu_s() -> float:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kit import CAMPAIGN, Case, hashes
+from kit import CAMPAIGN, SCENE, SIMULATION, Case, hashes
 from remote_scenes.campaign import CampaignError, read_campaign, run
 from remote_scenes.campaign.label_files import write_coco
 from remote_scenes.campaign.sample import Maker
@@ -200,6 +200,22 @@ class Refusals(Case):
         wide = CAMPAIGN.replace("{choice: [0.08, 0.12]}", "{uniform: [0.3, 1.2]}").replace("{integers: [3, 5]}", "0")
         self.refused("'scene.materials.ground.reflectance' of 1.2, which this distribution reaches, is refused: .*; a narrower distribution", 8, campaign=wide)
 
+    def test_a_variable_that_others_refer_to(self):
+        """Its own range is any; the key that gets it has one."""
+        wide = CAMPAIGN.replace("{choice: [0.08, 0.12]}", "$r\n  r: {normal: [0.5, 0.2]}").replace("{integers: [3, 5]}", "0")
+        self.refused("'r' of -0.45.*, which this distribution reaches, is refused", 9, campaign=wide)
+
+    def test_templates_that_a_program_refuses(self):
+        """In the scene's text with its own line, in the simulation's with the key."""
+        self.refused(r"scene.yaml:4:\d+: error: .*reflectance", scene=SCENE.replace("reflectance: 0.1}", "reflectance: 1.1}"))
+        self.refused(r"simulation.yaml: error: the first sample is refused: .*paths", simulation=SIMULATION.replace("paths: 4", "paths: -4"))
+
+    def test_a_sample_that_is_refused_once_its_objects_are_drawn(self):
+        path = self.write(CAMPAIGN.replace("place: car, ", "place: car, scale: {choice: [$s]}, ").replace("vary:\n", "vary:\n  s: -1\n"))
+        with self.assertRaisesRegex(CampaignError, "campaign.yaml:13:\\d+: error: sample 0: the scale -1 is out of range"):
+            run(path, self.folder / "out", workers=0)
+        self.assertEqual([p for p in self.folder.glob("out/samples/*")], [])
+
     def test_folders(self):
         path = self.write()
         (self.folder / "file").write_text("")
@@ -209,7 +225,7 @@ class Refusals(Case):
         (self.folder / "other/mine").write_text("")
         with self.assertRaisesRegex(CampaignError, "holds something else"):
             run(path, self.folder / "other", workers=0)
-        (self.folder / "made").mkdir()
+        (self.folder / "made/samples/000000").mkdir(parents=True)
         (self.folder / "made/campaign.json").write_text('{"campaign": "x"}')
         with self.assertRaisesRegex(CampaignError, "a campaign with other texts; give another folder"):
             run(path, self.folder / "made", workers=0)
