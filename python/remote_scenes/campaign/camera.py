@@ -16,9 +16,17 @@ Numbers = npt.NDArray[np.float64]
 class Camera(Protocol):
     """A sensor whose geometry is known here."""
 
-    columns: int
-    rows: int
-    time_s: float
+    @property
+    def columns(self) -> int:
+        """Pixels of a row."""
+
+    @property
+    def rows(self) -> int:
+        """Rows of pixels."""
+
+    @property
+    def time_s(self) -> float:
+        """Second at which the picture is taken."""
 
     def rays(self, x: Numbers, y: Numbers) -> tuple[Numbers, Numbers]:
         """Origins and directions (n, 3), scene ENU, of places in the picture."""

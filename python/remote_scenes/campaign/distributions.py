@@ -86,7 +86,7 @@ def _filled(node: Node, context: Context) -> Any:
 
 
 def _parameters(node: Node, kind: str, count: int) -> list[Node]:
-    items = node.value[kind].list()
+    items: list[Node] = node.value[kind].list()
     if len(items) != count:
         raise node.value[kind].error(f"'{kind}' has {len(items)} numbers", f"it has {count}")
     for item in items:
@@ -195,7 +195,7 @@ def _gauss(node: Node) -> tuple[Quantile, tuple[Any, ...]]:
     mean, deviation = _parameters(node, "normal", 2)
     cut, ends = (_two(node, "within") if "within" in node.value else (None, ()))
 
-    def value(context: Context, u: float) -> float:
+    def value(context: Context, u: float) -> Any:
         m, s = _filled(mean, context), _filled(deviation, context)
         if isinstance(m, (str, bool)) or isinstance(s, (str, bool)) or not s > 0:
             raise node.error(f"'normal' of mean {m!r} and deviation {s!r}", "two numbers, the deviation above 0")

@@ -103,13 +103,13 @@ def _ends(values: Sequence[Any]) -> list[Any]:
 def _refused(program: str, folder: Path, campaign: Campaign, text: str = "checked.yaml") -> str:
     """What the program says; empty when it takes the text."""
     search = campaign.scene_path.parent.resolve()
-    arguments = [text, "--path", search, "-q", *UNUSED] if program == "scene-prep" else [text, "--dry-run", "-q"]
+    arguments: list[str | Path] = [folder / text, "--path", search, "-q", *UNUSED] if program == "scene-prep" else [folder / text, "--dry-run", "-q"]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
             run_program(program, arguments, cwd=folder)
         except InputError as refused:
-            return (refused.message or str(refused).splitlines()[0]) + (f" (at {refused.key})" if refused.key else "")
+            return (refused.message or str(refused).splitlines()[0]) + (f" (at {refused.key})" if refused.key else "") + (f", {refused.hint}" if refused.hint else "")
     return ""
 
 

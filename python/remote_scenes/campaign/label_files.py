@@ -20,7 +20,7 @@ DIFFICULT_OCCLUSION = 0.5
 
 def write_coco(campaign: Campaign, folder: Path) -> None:
     """`annotations.json`; keys beyond COCO's are those of our labels."""
-    pictures, annotations = [], []
+    pictures, annotations = list[dict[str, Any]](), list[dict[str, Any]]()
     for number, image in enumerate(images(folder), 1):
         width, height = image.size
         entry = {"id": number, "file_name": image.file, "width": width, "height": height, "sample": image.sample}

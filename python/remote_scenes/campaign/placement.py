@@ -99,7 +99,7 @@ def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bound
               ground: Callable[[str | None, float, float], float | None]) -> list[Placed]:
     """The objects of a sample. bounds: of an object or group of the scene in its own frame, m; ground: height of what is below a place, m, of
     all or of the placements of one name, or None. CampaignError with the place in the text where an object finds no room."""
-    taken, out = _Taken(), []
+    taken, out = _Taken(), list[Placed]()
     for group in groups:
         for number in range(_count(group, draw)):
             context = ObjectDraw(draw, group.name, number)

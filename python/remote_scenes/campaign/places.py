@@ -33,7 +33,7 @@ def _item(items: list[Any], key: str, way: str) -> int:
 def put(tree: Any, path: str, value: Any) -> None:
     """Puts a value in a place; the last key may be a new one, a value of None takes it out. NoSuchPlace otherwise."""
     *way, last = path.split(".")
-    at, walked = tree, []
+    at, walked = tree, list[str]()
     for key in way:
         at = _inner(at, key, ".".join(walked) or "the text")
         walked.append(key)

@@ -204,7 +204,7 @@ def _about(name: str, dataset: xr.Dataset) -> dict[str, Any]:
         about["wavelength_um"] = dataset["wavelength_um"].values.tolist()
     if "acquisition_time" in dataset.attrs:
         about["time"] = dataset.attrs["acquisition_time"]
-    relative = errors / xr.where(values > 0, values, float("nan"))
+    relative = errors / np.where(values > 0, values, np.nan)
     about["median_relative_error"] = dict(zip(bands, (_median(r) for r in relative)))
     about["flagged"] = float((dataset["quality"].values != 0).mean())
     return about

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -72,7 +71,7 @@ def silhouette(camera: Camera, item: TracedScene, pose: Pose, corners: Numbers, 
         return None
     low, high = np.floor(at.min(axis=0)), np.ceil(at.max(axis=0))
     if not (high > 0).all() or not (low < [camera.columns, camera.rows]).all():
-        return Silhouette(*_nothing(), 1.0 / rays, math.nan)
+        return Silhouette(np.empty(0), np.empty(0), np.empty(0, bool), np.empty(0, bool), 1.0 / rays, math.nan)
     count = (high - low) * rays
     cell = 1.0 / rays
     if count.prod() > MOST_RAYS:
@@ -93,7 +92,3 @@ def silhouette(camera: Camera, item: TracedScene, pose: Pose, corners: Numbers, 
         visible[inside] = (here.tag == tag) & (here.distance <= behind.distance)
         distance = float(np.median(alone.distance[met][inside]) * pose.scale)
     return Silhouette(x, y, visible, inside, cell, distance)
-
-
-def _nothing() -> tuple[Any, ...]:
-    return np.empty(0), np.empty(0), np.empty(0, bool), np.empty(0, bool)

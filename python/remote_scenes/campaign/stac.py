@@ -27,14 +27,14 @@ def write_stac(campaign: Campaign, folder: Path) -> None:
         boxes += [item["bbox"]] if "bbox" in item else []
         links.append({"rel": "item", "href": f"./items/{image.key}.json", "type": "application/geo+json"})
     whole = [min(b[0] for b in boxes), min(b[1] for b in boxes), max(b[2] for b in boxes), max(b[3] for b in boxes)] if boxes else [-180, -90, 180, 90]
-    collection = {
+    collection: dict[str, Any] = {
         "type": "Collection", "stac_version": VERSION, "id": name, "title": campaign.name,
         "description": campaign.description or campaign.name, "license": "other" if campaign.license else "proprietary",
         "extent": {"spatial": {"bbox": [whole]}, "temporal": {"interval": [[min(dates), max(dates)] if dates else [None, None]]}},
         "summaries": {"classes": campaign.classes},
         "links": [{"rel": "root", "href": "./collection.json", "type": "application/json"}, *links]}
     if campaign.license:
-        collection["links"].append({"rel": "license", "href": campaign.license})  # type: ignore[attr-defined]
+        collection["links"].append({"rel": "license", "href": campaign.license})
     write_whole(folder / "stac/collection.json", json.dumps(collection, indent=1).encode())
 
 

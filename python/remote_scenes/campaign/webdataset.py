@@ -18,7 +18,7 @@ def write_webdataset(campaign: Campaign, folder: Path, shard_bytes: int = SHARD_
     image: KEY.png, KEY.json (labels and what the image is), and the files that are kept, as KEY.img, KEY.img.hdr, KEY.error.img ..."""
     target = folder / "shards"
     target.mkdir(exist_ok=True)
-    stem, sizes = "".join(c if c.isalnum() else "_" for c in campaign.name), {}
+    stem, sizes = "".join(c if c.isalnum() else "_" for c in campaign.name), dict[str, int]()
     waiting = images(folder)
     image = next(waiting, None)
     while image is not None:
