@@ -78,6 +78,18 @@ def write_whole(path: Path, content: bytes) -> None:
         new.unlink(missing_ok=True)
 
 
+def write_parts(path: Path, parts: Iterable[str]) -> None:
+    """As write_whole, of a text that is never in memory as a whole."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    new = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}")
+    try:
+        with new.open("w", encoding="utf-8") as file:
+            file.writelines(parts)
+        os.replace(new, path)
+    finally:
+        new.unlink(missing_ok=True)
+
+
 def _clear(samples: Path) -> None:
     """Takes away what workers of this machine that are no more have left unfinished."""
     mine = re.compile(rf"\.\d+\.{re.escape(socket.gethostname())}\.(\d+)")
@@ -134,8 +146,8 @@ class _Crew:
         finally:
             for worker in self._at:
                 worker.terminate()
-            for worker in self._at:
-                worker.wait()
+            for worker in list(self._at):
+                self._close(worker)
             _clear(self._samples)
 
     def _start(self, selector: selectors.BaseSelector) -> None:
@@ -203,4 +215,4 @@ class _Crew:
         self._start(selector)
 
 
-__all__ = ["Tally", "of_shard", "prepare_folder", "run_samples", "write_whole"]
+__all__ = ["Tally", "of_shard", "prepare_folder", "run_samples", "write_parts", "write_whole"]

@@ -7,11 +7,12 @@ picture's width and height); RFC 7946 (GeoJSON).
 from __future__ import annotations
 
 import json
+from itertools import chain
 from pathlib import Path
-from typing import Any, Callable, Iterator
+from typing import Any, Callable, Iterable, Iterator
 
 from .campaign import Campaign
-from .engine import write_whole
+from .engine import write_parts, write_whole
 from .exports import Image, images
 
 DIFFICULT_OCCLUSION = 0.5
@@ -20,20 +21,30 @@ DIFFICULT_OCCLUSION = 0.5
 
 def write_coco(campaign: Campaign, folder: Path) -> None:
     """`annotations.json`; keys beyond COCO's are those of our labels."""
-    pictures, annotations = list[dict[str, Any]](), list[dict[str, Any]]()
-    for number, image in enumerate(images(folder), 1):
-        width, height = image.size
-        entry = {"id": number, "file_name": image.file, "width": width, "height": height, "sample": image.sample}
-        if "time" in image.about:
-            entry["date_captured"] = image.about["time"]
-        pictures.append(entry)
-        for label in image.labels:
-            annotations.append({"id": len(annotations) + 1, "image_id": number, "iscrowd": 0, **label})
     licenses = [{"id": 1, "name": campaign.license, "url": campaign.license}] if campaign.license else []
     categories = [{"id": i, "name": name, "supercategory": "object"} for i, name in enumerate(campaign.classes, 1)]
-    tree = {"info": {"description": campaign.description or campaign.name, "version": "1"}, "licenses": licenses, "images": pictures,
-            "annotations": annotations, "categories": categories}
-    write_whole(folder / "annotations.json", json.dumps(tree).encode())
+    head = {"info": {"description": campaign.description or campaign.name, "version": "1"}, "licenses": licenses, "categories": categories}
+
+    def pictures() -> Iterator[dict[str, Any]]:
+        for number, image in enumerate(images(folder), 1):
+            width, height = image.size
+            date = {"date_captured": image.about["time"]} if "time" in image.about else {}
+            yield {"id": number, "file_name": image.file, "width": width, "height": height, "sample": image.sample, **date}
+
+    def annotations() -> Iterator[dict[str, Any]]:
+        number = 0
+        for picture, image in enumerate(images(folder), 1):
+            for label in image.labels:
+                number += 1
+                yield {"id": number, "image_id": picture, "iscrowd": 0, **label}
+
+    parts = (json.dumps(head)[:-1], ', "images": [')
+    write_parts(folder / "annotations.json", chain(parts, _joined(pictures()), ['], "annotations": ['], _joined(annotations()), ["]}\n"]))
+
+
+def _joined(entries: Iterable[dict[str, Any]]) -> Iterator[str]:
+    for i, entry in enumerate(entries):
+        yield (",\n" if i else "\n") + json.dumps(entry)
 
 
 def write_dota(campaign: Campaign, folder: Path) -> None:
@@ -93,5 +104,4 @@ def write_geojson(campaign: Campaign, folder: Path) -> None:
                     yield {"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
                            "properties": {"image": image.key, "file": image.file, **{k: label[k] for k in kept if k in label}}}
 
-    text = ",\n".join(json.dumps(f) for f in features())
-    write_whole(folder / "labels.geojson", f'{{"type": "FeatureCollection", "features": [\n{text}\n]}}\n'.encode())
+    write_parts(folder / "labels.geojson", chain(['{"type": "FeatureCollection", "features": ['], _joined(features()), ["\n]}\n"]))

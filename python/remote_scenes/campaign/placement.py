@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Callable, Mapping, Sequence
+from itertools import count
+from typing import Any, Callable, Iterator, Mapping, Sequence
 
 from .draws import unit
 from .objects import Group, Item
@@ -101,6 +102,7 @@ def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bound
     all or of the placements of one name, or None. CampaignError with the place in the text where an object finds no room."""
     taken, out = _Taken(), list[Placed]()
     for group in groups:
+        slots = count()  # the next one that is free
         for number in range(_count(group, draw)):
             context = ObjectDraw(draw, group.name, number)
             item = _item(group, context)
@@ -109,7 +111,7 @@ def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bound
                 raise item.node.error(f"sample {draw.sample}: the scale {scale:g} is out of range", "1e-06 to 1e+06")
             materials = {key: str(rule.value(context)) for key, rule in item.materials.items()}
             box = bounds(item.place)
-            x, y, heading = _find(group, number, context, draw, box, scale, taken)
+            x, y, heading = _find(group, number, context, draw, box, scale, taken, slots)
             z = _number(group.height, context) if group.height else ground(group.on, x, y)
             if z is None:
                 raise group.node.error(f"sample {draw.sample}: nothing is below object {number} of '{group.name}' at ({x:.2f}, {y:.2f})",
@@ -146,17 +148,18 @@ def _number(rule: Any, context: ObjectDraw) -> float:
     return float(value)
 
 
-def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bounds, scale: float, taken: _Taken) -> tuple[float, float, float]:
-    """A place with room."""
+def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bounds, scale: float, taken: _Taken,
+          slots: Iterator[int]) -> tuple[float, float, float]:
+    """A place with room; of slots the next one that has it."""
     turned = _number(group.heading, context) if group.heading else 0.0
-    slots = isinstance(group.region, Slots)
-    for attempt in range(1 if slots else group.attempts):
+    tried = len(group.region.places) if isinstance(group.region, Slots) else group.attempts
+    for attempt in range(tried):
         def one(name: str) -> float:
             if name == "slots":
                 return unit(draw.seed, draw.sample, "slots", group.name)
             return context.number(f"{name}.{attempt}")
 
-        found = group.region.place(number, one)
+        found = group.region.place(next(slots), one)
         if found is None:
             continue
         x, y, heading = found[0], found[1], (found[2] + turned) % 360
@@ -164,8 +167,7 @@ def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bound
         if (not group.whole or group.region.holds_all(corners)) and taken.free(corners, group.spacing_m):
             taken.add(corners)
             return x, y, heading
-    why = "its place is taken" if slots else f"no place has room in {group.attempts} attempts"
-    raise group.node.error(f"sample {draw.sample}: object {number} of '{group.name}': {why}", "fewer objects, less `spacing_m`, or more room")
+    raise group.node.error(f"sample {draw.sample}: object {number} of '{group.name}': no place has room in {tried} attempts", "fewer objects, less `spacing_m`, or more room")
 
 
 __all__ = ["Bounds", "CampaignError", "Placed", "apart", "footprint", "place_all"]

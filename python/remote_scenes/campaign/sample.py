@@ -8,7 +8,7 @@ import socket
 import warnings
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Sequence
 
 import numpy as np
 import xarray as xr
@@ -114,7 +114,7 @@ class Maker:
     def _make(self, sample: int, new: Path) -> None:
         work = new / "work"
         drawn = self.draw(sample, work)
-        messages = _render(work)
+        messages = _render(work, [work, self.folder, self._search])
         result = Result(work / "out")
         images = []
         for name in result.images:
@@ -185,12 +185,16 @@ def _ground(scene: TracedScene, x: float, y: float) -> float | None:
     return round(float(hits.position[2]), 6) + 0.0 if bool(hits.hit) else None
 
 
-def _render(work: Path) -> list[str]:
-    """Renders within the folder, by names that are the same for every sample: they stand in the images' headers. Returns what was warned of."""
+def _render(work: Path, folders: Sequence[Path]) -> list[str]:
+    """Renders within the folder, by names that are the same for every sample: they stand in the images' headers. Returns what was warned of, without
+    the names of folders, which are not a sample's own."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         run_program("dirsig-render", ["simulation.yaml", "-o", "out", "-j", "1", "-q"], cwd=work)
-    return sorted({str(w.message).replace(str(work) + os.sep, "") for w in caught})
+    said = {str(w.message) for w in caught}
+    for name in [form + os.sep for folder in folders for form in (str(folder), os.path.abspath(folder))]:
+        said = {message.replace(name, "") for message in said}
+    return sorted(said)
 
 
 def _about(name: str, dataset: xr.Dataset) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import tarfile
 from pathlib import Path
 
 from .campaign import Campaign
+from .engine import write_whole
 from .exports import Image, images
 
 SHARD_BYTES = 256 << 20
@@ -37,7 +38,7 @@ def write_webdataset(campaign: Campaign, folder: Path, shard_bytes: int = SHARD_
     for old in target.glob(f"{stem}-*.tar"):
         if old.name not in sizes:
             old.unlink()
-    (target / "sizes.json").write_text(json.dumps(sizes), encoding="utf-8")
+    write_whole(target / "sizes.json", json.dumps(sizes).encode())
 
 
 def _add(tar: tarfile.TarFile, folder: Path, image: Image) -> int:

@@ -8,8 +8,11 @@ from statistics import NormalDist
 from kit import Case, chi_square, chi_square_bound
 from remote_scenes.campaign import draws
 from remote_scenes.campaign.regions import Polygons, Roads, Slots
-from remote_scenes.campaign.text import read_text
-from remote_scenes.campaign.variables import read_variables
+from remote_scenes.campaign.distributions import read_rule
+from remote_scenes.campaign.objects import Group, Item
+from remote_scenes.campaign.placement import place_all
+from remote_scenes.campaign.text import CampaignError, Node, read_text
+from remote_scenes.campaign.variables import Draw, Variables, read_variables
 
 N = 10_000
 CELLS = 25
@@ -136,6 +139,24 @@ class Places(unittest.TestCase):
         slots = Slots(tuple((float(i), 0.0, 0.0) for i in range(12)))
         self.assertEqual(sorted(slots.place(i, lambda name: 0.3)[0] for i in range(12)), list(range(12)))
         self.assertIsNone(slots.place(12, lambda name: 0.3))
+
+    def placed(self, count, places, spacing=0.0):
+        number = lambda value: read_rule(Node(value, "c.yaml", 3, 1), "n")
+        item = Item("car", "car", "car", 1, {}, None, Node({}, "c.yaml", 4, 1))
+        group = Group("g", (item,), number(count), Slots(places), None, spacing, True, number(0), None, 9, Node({}, "c.yaml", 5, 1))
+        draw = Draw(Variables({}, (), {}, {}), 1, 0, 1)
+        return place_all([group], draw, lambda place: ((-1, -2, 0), (1, 2, 1)), lambda on, x, y: 0.0)
+
+    def test_slots_without_room_are_left_out(self):
+        """Eight slots a metre apart hold things that are 2 m wide with 1 m between them: two for certain, four never."""
+        places = tuple((float(i), 0.0, 0.0) for i in range(8))
+        wide = tuple((3.0 * i, 0.0, 0.0) for i in range(8))
+        self.assertEqual(sorted(p.position_m[0] for p in self.placed(8, wide, 1.0)), [3.0 * i for i in range(8)])
+        xs = sorted(p.position_m[0] for p in self.placed(2, places, 1.0))
+        self.assertGreaterEqual(xs[1] - xs[0], 3)
+        for count, said in ((4, "c.yaml:5:1: error: sample 0: object \\d of 'g': no place has room in 8 attempts"), (9, "c.yaml:3:1: error: sample 0: 9 objects for 8 places")):
+            with self.assertRaisesRegex(CampaignError, said):
+                self.placed(count, places, 1.0)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ import numpy as np
 
 from kit import CAMPAIGN, SCENE, SIMULATION, Case, hashes
 from remote_scenes.campaign import CampaignError, read_campaign, run
+from remote_scenes.campaign.engine import prepare_folder, run_samples
 from remote_scenes.campaign.label_files import write_coco
 from remote_scenes.campaign.sample import Maker
 from remote_scenes.campaign.slurm import slurm_script
@@ -61,7 +62,7 @@ class Engine(Case):
         # What is left goes on in shards, by other numbers of workers.
         self.assertLess(count(second), SAMPLES)
         run(path, second, workers=0, shard=(2, 2))
-        last = run(path, second, workers=1)
+        last = run(path, second, workers=0)
         self.assertTrue(last.complete)
         self.assertEqual(hashes(first), hashes(second))
         self.assertFalse([p for p in (second / "samples").iterdir() if p.name.startswith(".")])
@@ -215,6 +216,16 @@ class Refusals(Case):
         with self.assertRaisesRegex(CampaignError, "campaign.yaml:13:\\d+: error: sample 0: the scale -1 is out of range"):
             run(path, self.folder / "out", workers=0)
         self.assertEqual([p for p in self.folder.glob("out/samples/*")], [])
+
+    def test_texts_that_change_under_way(self):
+        """A worker that begins after the change makes no sample of it."""
+        path = self.write()
+        campaign = read_campaign(path)
+        prepare_folder(campaign, self.folder / "out")
+        self.write(CAMPAIGN.replace("seed: 3", "seed: 4"))
+        with self.assertRaisesRegex(CampaignError, "the texts were changed while the run went on"):
+            run_samples(campaign, self.folder / "out", range(2), 1, "v", lambda _: None)
+        self.assertEqual(list((self.folder / "out/samples").iterdir()), [])
 
     def test_folders(self):
         path = self.write()
