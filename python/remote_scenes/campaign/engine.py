@@ -59,7 +59,7 @@ def prepare_folder(campaign: Campaign, folder: Path) -> str:
         for source in (campaign.path, campaign.scene_path, campaign.simulation_path):
             write_whole(folder / "texts" / source.name, source.read_bytes())
         write_whole(record, as_json(wanted).encode())
-        _clear(folder / "samples")
+        _clear(folder)
     except OSError as problem:
         raise CampaignError(f"the dataset cannot be written: {problem.strerror}", "room, and the right to write", str(folder)) from None
     return version
@@ -90,12 +90,25 @@ def write_parts(path: Path, parts: Iterable[str]) -> None:
         new.unlink(missing_ok=True)
 
 
-def _clear(samples: Path) -> None:
+def _clear(folder: Path) -> None:
     """Takes away what workers of this machine that are no more have left unfinished."""
-    mine = re.compile(rf"\.\d+\.{re.escape(socket.gethostname())}\.(\d+)")
-    for path in samples.iterdir():
-        if (match := mine.fullmatch(path.name)) and not Path(f"/proc/{match[1]}").exists():
-            shutil.rmtree(path, ignore_errors=True)
+    mine = re.compile(rf"\.[0-9a-f]+\.{re.escape(socket.gethostname())}\.(\d+)(\.h5|\.yaml)?")
+    for path in [*(folder / "samples").iterdir(), *(folder / "shared").glob(".*")]:
+        if (match := mine.fullmatch(path.name)) and not _is_alive(int(match[1])):
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink(missing_ok=True)
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        pass  # somebody else's
+    return True
 
 
 def of_shard(samples: int, shard: tuple[int, int]) -> range:
@@ -132,7 +145,7 @@ class _Crew:
         self._tell, self._tally, self._waiting, self._all = tell, tally, waiting, len(waiting)
         self._at: dict[subprocess.Popen[str], int | None] = {}
         self._deaths: dict[int, int] = {}
-        self._samples = folder / "samples"
+        self._folder = folder
 
     def work(self, count: int) -> None:
         """Until nothing waits."""
@@ -148,7 +161,7 @@ class _Crew:
                 worker.terminate()
             for worker in list(self._at):
                 self._close(worker)
-            _clear(self._samples)
+            _clear(self._folder)
 
     def _start(self, selector: selectors.BaseSelector) -> None:
         # The workers find this package where this process has found it.
@@ -203,7 +216,7 @@ class _Crew:
         """A worker has died: its sample goes back to the front, and another worker takes its place."""
         sample = self._at[worker]
         self._close(worker)
-        _clear(self._samples)
+        _clear(self._folder)
         self._tally.deaths += 1
         assert sample is not None
         self._deaths[sample] = self._deaths.get(sample, 0) + 1

@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from kit import CAMPAIGN, SCENE, SIMULATION, Case, hashes
-from remote_scenes.campaign import CampaignError, read_campaign, run
+from remote_scenes.campaign import CampaignError, forecast, read_campaign, run
 from remote_scenes.campaign.engine import prepare_folder, run_samples
+from remote_scenes.campaign.exports import images
 from remote_scenes.campaign.label_files import write_coco
-from remote_scenes.campaign.sample import Maker
+from remote_scenes.campaign.sheet import read_png, write_sheet
 from remote_scenes.campaign.slurm import slurm_script
 
 SAMPLES = 4
@@ -43,7 +44,8 @@ def count(folder):
 class Engine(Case):
     @unittest.skipUnless(Path("/proc/self/task").is_dir(), "needs /proc")
     def test_same_bytes_however_it_is_made(self):
-        path = self.write(CAMPAIGN.replace("seed: 3", FORMATS + "seed: 3").replace("samples: 5", f"samples: {SAMPLES}"))
+        text = CAMPAIGN.replace("seed: 3", FORMATS + "seed: 3").replace("samples: 5", f"samples: {SAMPLES}")
+        path = self.write(text)
         first = self.folder / "first"
         outcome = run(path, first, workers=0)
         self.assertTrue(outcome.complete and outcome.tally.made == SAMPLES)
@@ -66,10 +68,18 @@ class Engine(Case):
         self.assertTrue(last.complete)
         self.assertEqual(hashes(first), hashes(second))
         self.assertFalse([p for p in (second / "samples").iterdir() if p.name.startswith(".")])
-        # A sample that is made again is the same; another seed is another dataset (the control).
-        other = Maker(read_campaign(self.write(CAMPAIGN.replace("seed: 3", "seed: 4"))), self.folder / "other", "v").make(0)
-        self.assertNotEqual((other / "chip.img").read_bytes(), (first / "samples/000000/chip.img").read_bytes())
+        # The control: samples differ.
+        self.assertEqual(len({(first / f"samples/{i:06d}/chip.img").read_bytes() for i in range(SAMPLES)}), SAMPLES)
         self.lists(first)
+        told = forecast(read_campaign(self.write(text)), "v", 1)
+        size = sum(p.stat().st_size for p in (first / "samples").rglob("*") if p.is_file())
+        self.assertEqual((told.samples, told.pilots), (SAMPLES, 1))
+        self.assertAlmostEqual(told.bytes / size, 1, delta=0.1)
+        self.assertRegex(str(told), r"4 samples: [\d.e-]+ h of one processor, .*\nmedian relative standard error: chip/red [\d.]+ %")
+        write_sheet(first, list(images(first)), self.folder / "sheet.png")
+        sheet = read_png(self.folder / "sheet.png")
+        self.assertEqual(sheet.shape, (6 + 262, 6 + 4 * 262, 3))
+        self.assertTrue((sheet == (255, 220, 0)).all(axis=2).any())  # the frame of a car
 
     def kill_one(self, process, folder):
         """One worker, once it has begun a sample."""
@@ -249,7 +259,7 @@ class Refusals(Case):
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
 
-        done = subprocess.run(command(path, self.folder / "out", "--workers", "1"), capture_output=True, text=True, preexec_fn=full)
+        done = subprocess.run(command(path, self.folder / "out", "--workers", "0"), capture_output=True, text=True, preexec_fn=full)
         self.assertEqual(done.returncode, 1, done)
         errors = [line for line in done.stderr.splitlines() if "error" in line]
         self.assertEqual(len(errors), 1, done.stderr)
