@@ -1,0 +1,118 @@
+"""A campaign: its text, the two texts that it varies, and the draws of every sample."""
+from __future__ import annotations
+
+import copy
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Mapping
+
+from ..tree import FileName
+from .draws import hashed
+from .objects import Group, read_objects
+from .places import NoSuchPlace, put
+from .settings import Labels, Picture, read_formats, read_keep, read_labels, read_picture
+from .text import CampaignError, Node, read_text
+from .variables import Draw, Variables, read_variables
+
+KEYS = ("campaign", "name", "description", "license", "seed", "samples", "scene", "simulation", "vary", "objects", "picture", "labels", "formats",
+        "keep")
+MOST_SAMPLES = 10_000_000
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A campaign as its text says. scene, simulation: the two texts as trees, which are never changed."""
+
+    path: Path
+    name: str
+    description: str
+    license: str
+    seed: int
+    samples: int
+    scene: dict[str, Any]
+    simulation: dict[str, Any]
+    scene_path: Path
+    simulation_path: Path
+    variables: Variables
+    groups: tuple[Group, ...]
+    picture: Picture
+    labels: Labels
+    formats: tuple[str, ...]
+    keep: tuple[str, ...]
+    digest: str
+    """Of the three texts."""
+
+    @property
+    def classes(self) -> list[str]:
+        """Names of the classes, in the order of their numbers from 1."""
+        there = list(dict.fromkeys(item.class_name for group in self.groups for item in group.items))
+        return [*self.labels.classes, *(c for c in there if c not in self.labels.classes)]
+
+    @property
+    def scenes_return(self) -> bool:
+        """Whether samples have scenes in common: nothing that the scene's text gets is continuous."""
+        return not any(name.startswith("scene.") and self.variables.continuous(name) for name in self.variables.rules)
+
+    def draw(self, sample: int, forced: Mapping[str, Any] | None = None) -> Draw:
+        """All variables of a sample; forced: values in place of some draws."""
+        values = self.variables.values(self.seed, sample, self.samples, forced)
+        return Draw(self.variables, self.seed, sample, self.samples, values)
+
+    def texts(self, draw: Draw) -> tuple[dict[str, Any], dict[str, Any]]:
+        """The scene's and the simulation's text of a sample, as trees, without objects. CampaignError: a place is not there."""
+        trees = {"scene": copy.deepcopy(self.scene), "simulation": copy.deepcopy(self.simulation)}
+        trees["simulation"]["seed"] = hashed(self.seed, draw.sample, "render") % (1 << 31)
+        for name, rule in self.variables.rules.items():
+            text, dot, place = name.partition(".")
+            if dot and text in trees:
+                try:
+                    put(trees[text], place, copy.deepcopy(draw.known[name]))
+                except NoSuchPlace as missing:
+                    raise rule.node.error(str(missing.args[0]), str(missing.args[1])) from None
+        return trees["scene"], trees["simulation"]
+
+
+def read_campaign(path: FileName) -> Campaign:
+    """Reads a campaign and the two texts that it names, and checks all that needs no program. CampaignError with file and line."""
+    root = read_text(path)
+    keys = root.map(KEYS, ("campaign", "samples", "scene", "simulation"))
+    if keys["campaign"].value != 1:
+        raise keys["campaign"].error(f"version {keys['campaign'].value!r} of this grammar is not known", "campaign: 1")
+    path = Path(path)
+    scene_path, scene = _template(keys["scene"], path.parent, "world")
+    simulation_path, simulation = _template(keys["simulation"], path.parent, "sensors")
+    variables = read_variables(keys.get("vary"))
+    for name, rule in variables.rules.items():
+        if "." in name and name.partition(".")[0] not in ("scene", "simulation"):
+            raise rule.node.error(f"'{name}' is in neither text", "scene.PLACE, simulation.PLACE, or a name without dots")
+    groups = read_objects(keys.get("objects"), scene, variables, path.parent)
+    if groups and "scenes" in simulation:
+        raise keys["objects"].error("a simulation with `scenes` takes no objects", "a simulation with `scene`, whatever it says there")
+    digest = hashlib.sha256(b"\0".join(p.read_bytes() for p in (path, scene_path, simulation_path))).hexdigest()
+    campaign = Campaign(
+        path, keys["name"].text() if "name" in keys else path.stem, keys["description"].text() if "description" in keys else "",
+        keys["license"].text() if "license" in keys else "", keys["seed"].integer(0, (1 << 53) - 1) if "seed" in keys else 1,
+        keys["samples"].integer(1, MOST_SAMPLES), scene, simulation, scene_path, simulation_path, variables, groups,
+        read_picture(keys.get("picture")), read_labels(keys.get("labels")), read_formats(keys.get("formats")), read_keep(keys.get("keep")), digest)
+    campaign.texts(campaign.draw(0))
+    return campaign
+
+
+def _template(node: Node, folder: Path, wanted: str) -> tuple[Path, dict[str, Any]]:
+    path = folder / node.text()
+    if not path.is_file():
+        raise node.error(f"{path} is not there")
+    tree = read_text(path).plain()
+    if wanted not in tree:
+        raise node.error(f"{path} has no '{wanted}'", "a scene's text under `scene`, a simulation's under `simulation`")
+    return path, tree
+
+
+def as_json(value: Any) -> str:
+    """JSON in one form, for hashes and files that must be the same to the byte."""
+    return json.dumps(value, sort_keys=True, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+__all__ = ["Campaign", "CampaignError", "as_json", "read_campaign"]

@@ -1,0 +1,84 @@
+"""Runs of a campaign: all samples of a shard, then the lists of images and labels when everything is there."""
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable
+
+from ..errors import ProgramError
+from ..programs import version as program_version
+from ..tree import FileName
+from .campaign import Campaign, read_campaign
+from .croissant import write_croissant
+from .engine import Tally, Tell, of_shard, prepare_folder, run_samples
+from .exports import finished, images
+from .forecast import check_ends
+from .label_files import write_coco, write_dota, write_geojson, write_yolo, write_yolo_obb
+from .sheet import write_sheet
+from .stac import write_stac
+from .text import CampaignError
+from .webdataset import write_webdataset
+
+PREVIEWED = 12
+_WRITERS: dict[str, Callable[[Campaign, Path], None]] = {
+    "coco": write_coco, "dota": write_dota, "yolo": write_yolo, "yolo_obb": write_yolo_obb, "geojson": write_geojson,
+    "webdataset": write_webdataset, "stac": write_stac}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run has left. complete: all samples of the campaign are there, and the lists are written."""
+
+    folder: Path
+    tally: Tally
+    complete: bool
+
+
+def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None = None, shard: tuple[int, int] = (1, 1),
+        tell: Tell | None = None) -> Outcome:
+    """Makes the samples of a campaign that are not there yet, and writes its lists when all are. workers: processes, one per core unless given,
+    0 = within this process; shard: (i, n), every n-th sample from the i-th on. CampaignError: something is refused; what is finished stays."""
+    campaign = campaign if isinstance(campaign, Campaign) else read_campaign(campaign)
+    folder = Path(folder)
+    if not 1 <= shard[0] <= shard[1]:
+        raise ValueError(f"shard {shard[0]}/{shard[1]}: the first is 1/{shard[1]}, the last {shard[1]}/{shard[1]}")
+    version = prepare_folder(campaign, folder)
+    speak = tell or (lambda _: None)
+    if not finished(folder):
+        check_ends(campaign, version)
+    try:
+        tally = run_samples(campaign, folder, of_shard(campaign.samples, shard), os.cpu_count() or 1 if workers is None else workers, version, speak)
+        complete = len(finished(folder)) == campaign.samples
+        if complete:
+            _write_lists(campaign, folder, version)
+    except OSError as problem:
+        raise CampaignError(f"the dataset cannot be written: {problem}", "room, and the right to write; the same command goes on", str(folder)) from None
+    return Outcome(folder, tally, complete)
+
+
+def _write_lists(campaign: Campaign, folder: Path, version: str) -> None:
+    for name in campaign.formats:
+        if name in _WRITERS:
+            _WRITERS[name](campaign, folder)
+    if "croissant" in campaign.formats:
+        write_croissant(campaign, folder, version)
+
+
+def preview(campaign: FileName | Campaign, path: FileName, *, workers: int | None = None) -> Path:
+    """Twelve samples, evenly from the whole campaign, with their oriented boxes on one sheet (PNG); they are thrown away."""
+    campaign = campaign if isinstance(campaign, Campaign) else read_campaign(campaign)
+    count = min(PREVIEWED, campaign.samples)
+    with tempfile.TemporaryDirectory(prefix="campaign-") as name:
+        folder = Path(name)
+        version = program_version()
+        (folder / "samples").mkdir()
+        check_ends(campaign, version)
+        run_samples(campaign, folder, [i * campaign.samples // count for i in range(count)], os.cpu_count() or 1 if workers is None else workers, version,
+                    lambda _: None)
+        write_sheet(folder, list(images(folder)), Path(path))
+    return Path(path)
+
+
+__all__ = ["Outcome", "ProgramError", "preview", "run"]

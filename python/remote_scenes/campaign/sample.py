@@ -1,0 +1,228 @@
+"""One sample: its texts are drawn, prepared and rendered, its objects labelled, and all of it put into its folder at once."""
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import socket
+import warnings
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Sequence
+
+import numpy as np
+import xarray as xr
+
+from ..chips import _picture, _write_png
+from ..programs import run_program
+from ..results import Result
+from ..traced import TracedScene
+from .camera import Camera, camera_of, name_of
+from .campaign import Campaign, as_json
+from .earth import Frame
+from .labels import Sight, degrees, label_image, rounded
+from .placement import Bounds, Placed, place_all
+from .shared import Shared, prepare_tree, with_files, write_tree
+from .text import CampaignError
+from .things import ground_scene, item_scene, placed_scene
+from .variables import Draw
+
+_TRUTH = ("tag", "tag_fraction", "instance", "range")
+_OF_SUN = ("incidence", "sun_visibility")
+_KEPT = {"image": ("",), "error": ("_error",), "quality": ("_quality",), "truth": ("_truth",), "classes": ("_tag", "_material")}
+HIGHEST_M = 1e5
+"""Where rays begin that look for what is below an object."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A sample before it is rendered: its draws and texts, the prepared scenes, and its objects."""
+
+    draw: Draw
+    scene: dict[str, Any]
+    simulation: dict[str, Any]
+    backdrop: Path
+    things: Path | None
+    placed: list[Placed]
+
+
+class Maker:
+    """Makes samples of a campaign in a folder. A sample's bytes depend on the campaign, its seed and the sample's number alone."""
+
+    def __init__(self, campaign: Campaign, folder: Path, version: str) -> None:
+        """version: of the programs."""
+        self.campaign, self.folder, self.version = campaign, folder, version
+        self._search = campaign.scene_path.parent.resolve()
+        self._scenes_return = campaign.scenes_return
+        self.shared = Shared(folder / "shared", self._search, version)
+
+    def path(self, sample: int) -> Path:
+        """The folder of a sample; it is there when the sample is finished."""
+        return self.folder / "samples" / f"{sample:06d}"
+
+    def make(self, sample: int) -> Path:
+        """Makes a sample unless it is there. CampaignError, InputError or OSError: it cannot be made, and leaves nothing."""
+        target = self.path(sample)
+        if target.is_dir():
+            return target
+        new = target.with_name(f".{target.name}.{socket.gethostname()}.{os.getpid()}")
+        shutil.rmtree(new, ignore_errors=True)
+        try:
+            (new / "work").mkdir(parents=True)
+            self._make(sample, new)
+            shutil.rmtree(new / "work")
+            try:
+                os.rename(new, target)
+            except OSError:
+                if not target.is_dir():  # else another worker was faster, with the same bytes
+                    raise
+        finally:
+            shutil.rmtree(new, ignore_errors=True)
+        return target
+
+    def draw(self, sample: int, folder: Path) -> Drawn:
+        """Draws a sample, prepares its scenes, and writes simulation.yaml (and things.h5) into a folder, ready to be rendered."""
+        campaign = self.campaign
+        draw = campaign.draw(sample)
+        scene, simulation = campaign.texts(draw)
+        if self._scenes_return:
+            backdrop = self.shared.prepare(scene)
+        else:  # this sample's alone
+            backdrop = folder / "backdrop.h5"
+            prepare_tree(scene, backdrop, self._search)
+        placed: list[Placed] = []
+        things = None
+        if campaign.groups:
+            with self._opened(backdrop) as opened:
+                placed = place_all(campaign.groups, draw, lambda place: self._bounds(scene, place), lambda on, x, y: _ground(
+                    self.shared.open(self.shared.prepare(ground_scene(scene, on))) if on else opened, x, y))
+        if placed:
+            things = folder / "things.h5"
+            prepare_tree(placed_scene(scene, placed), things, self._search)
+        simulation = with_files(simulation, campaign.simulation_path.parent)
+        if campaign.groups:
+            for sensor in simulation["sensors"]:
+                if sensor.get("kind") not in ("point", "goniometer", "rami"):
+                    wanted = [*(sensor.get("truth") or []), *_TRUTH, *(_OF_SUN if simulation.get("sun") else ())]
+                    sensor["truth"] = list(dict.fromkeys(wanted))
+        if "scenes" not in simulation:
+            simulation.pop("scene", None)
+            simulation = {"scenes": [os.path.abspath(p) for p in (backdrop, things) if p], **simulation}
+        write_tree(simulation, folder / "simulation.yaml")
+        return Drawn(draw, scene, simulation, backdrop, things, placed)
+
+    def _make(self, sample: int, new: Path) -> None:
+        work = new / "work"
+        drawn = self.draw(sample, work)
+        messages = _render(work, [work, self.folder, self._search])
+        result = Result(work / "out")
+        images = []
+        for name in result.images:
+            dataset = result[name].load()
+            picture = self.campaign.picture
+            try:
+                pixels = _picture(dataset, picture.bands, picture.stretch, picture.range)
+            except ValueError as wrong:
+                raise CampaignError(f"picture of '{name}': {wrong}", file=str(self.campaign.path)) from None
+            _write_png(new / f"{name}.png", pixels)
+            images.append({**rounded(_about(name, dataset)), **self._seen(name, dataset, drawn)})
+            endings = [e for part in self.campaign.keep for e in _KEPT[part]]
+            for file in (f"{name}{e}{kind}" for e in endings for kind in (".img", ".img.hdr", ".tif")):
+                if (work / "out" / file).exists():
+                    os.replace(work / "out" / file, new / file)
+        record = {"campaign": self.campaign.digest, "version": self.version, "seed": self.campaign.seed, "sample": sample,
+                  "values": drawn.draw.known, "objects": [asdict(p) for p in drawn.placed], "images": images, "messages": messages}
+        (new / "sample.json").write_text(as_json(record), encoding="utf-8")
+
+    def _seen(self, name: str, dataset: xr.Dataset, drawn: Drawn) -> dict[str, Any]:
+        """What an image shows: its labels, and where its corners are on the Earth."""
+        sensor: dict[str, Any] = next((s for s in drawn.simulation["sensors"] if name_of(s) == name), {})
+        camera, frame, settings = camera_of(sensor), _frame(drawn.scene), self.campaign.labels
+        time = camera.time_s if camera else 0.0
+        with self._opened(drawn.backdrop, time) as backdrop:
+            corners = {"corners_lon_lat": _corners(camera, backdrop, frame)} if camera and frame else {}
+            if not drawn.things or "tag" not in dataset:
+                return {**corners, "labels": []}
+            items = {p.place: self._item(drawn.scene, p.place) for p in drawn.placed}
+            with TracedScene(drawn.things, time) as things:
+                sight = Sight(camera, things, backdrop, settings.rays) if camera else None
+                labels = label_image(dataset, drawn.placed, items, self.campaign.classes, sight, frame, settings.min_pixels, settings.segmentation)
+        return {**corners, "labels": labels}
+
+    def _opened(self, backdrop: Path, time_s: float = 0.0) -> contextlib.AbstractContextManager[TracedScene]:
+        """A backdrop: a shared one stays open, a sample's own is closed."""
+        return contextlib.nullcontext(self.shared.open(backdrop, time_s)) if self._scenes_return else TracedScene(backdrop, time_s)
+
+    def _item(self, scene: dict[str, Any], place: str) -> TracedScene:
+        return self.shared.open(self.shared.prepare(item_scene(scene, place)))
+
+    def _bounds(self, scene: dict[str, Any], place: str) -> Bounds:
+        low, high = self._item(scene, place).bounds.tolist()
+        if not all(abs(v) < 1e6 for v in (*low, *high)):
+            raise CampaignError(f"'{place}' has no end, and cannot be placed as an object", "something with bounds", str(self.campaign.path))
+        return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def _frame(scene: dict[str, Any]) -> Frame | None:
+    origin = scene.get("origin")
+    return Frame(float(origin["latitude_deg"]), float(origin["longitude_deg"]), float(origin.get("height_m", 0))) if origin else None
+
+
+def _corners(camera: Camera, scene: TracedScene, frame: Frame) -> list[list[str]] | None:
+    """Longitude and latitude of what the picture's corners show, from the lower left one against the clock; None where one shows nothing."""
+    w, h = float(camera.columns), float(camera.rows)
+    hits = scene.trace(*camera.rays(np.array([0, w, w, 0]), np.array([h, h, 0, 0])))
+    if not hits.hit.all():
+        return None
+    return [degrees(frame, place) for place in hits.position]
+
+
+def _ground(scene: TracedScene, x: float, y: float) -> float | None:
+    """The height of what is first met from above."""
+    top = float(scene.bounds[1, 2])
+    hits = scene.trace([x, y, top + 1 if abs(top) < HIGHEST_M else HIGHEST_M], [0, 0, -1])
+    # To the micrometre: what is left of the ray's length is no height.
+    return round(float(hits.position[2]), 6) + 0.0 if bool(hits.hit) else None
+
+
+def _render(work: Path, folders: Sequence[Path]) -> list[str]:
+    """Renders within the folder, by names that are the same for every sample: they stand in the images' headers. Returns what was warned of, without
+    the names of folders, which are not a sample's own."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run_program("dirsig-render", ["simulation.yaml", "-o", "out", "-j", "1", "-q"], cwd=work)
+    said = {str(w.message) for w in caught}
+    for name in [form + os.sep for folder in folders for form in (str(folder), os.path.abspath(folder))]:
+        said = {message.replace(name, "") for message in said}
+    return sorted(said)
+
+
+def _about(name: str, dataset: xr.Dataset) -> dict[str, Any]:
+    """What a list of images wants to know: size, place on a map, date, and the statistics of the errors."""
+    quantity = str(next(iter(dataset.data_vars)))
+    values, errors = dataset[quantity].values.astype(float), dataset["standard_error"].values.astype(float)
+    bands = [str(b) for b in dataset["band"].values]
+    about: dict[str, Any] = {"name": name, "width": dataset.sizes["x"], "height": dataset.sizes["y"], "bands": bands, "quantity": quantity,
+                             "unit": dataset[quantity].attrs.get("units", "1")}
+    if "wavelength_um" in dataset.coords:
+        about["wavelength_um"] = dataset["wavelength_um"].values.tolist()
+    if "acquisition_time" in dataset.attrs:
+        about["time"] = dataset.attrs["acquisition_time"]
+    relative = errors / np.where(values > 0, values, np.nan)
+    about["median_relative_error"] = dict(zip(bands, (_median(r) for r in relative)))
+    about["flagged"] = float((dataset["quality"].values != 0).mean())
+    return about
+
+
+def _median(values: Any) -> float:
+    known = sorted(v for v in values.ravel().tolist() if v == v)
+    return float(known[len(known) // 2]) if known else float("nan")
+
+
+def refusal(sample: int, problem: Exception) -> str:
+    """One message of what stopped a sample."""
+    if isinstance(problem, CampaignError):
+        return str(problem)
+    if isinstance(problem, OSError):
+        return f"error: sample {sample} cannot be written: {problem}"
+    return f"error: sample {sample} was refused: {str(problem).splitlines()[0]}; `--texts {sample}` writes its texts"

@@ -1,0 +1,163 @@
+"""Draws: distributions by chi-square over 10,000 draws each (significance 1e-5, fixed seeds) with a negative control; what they may depend on."""
+import itertools
+import math
+import unittest
+from collections import Counter
+from statistics import NormalDist
+
+from kit import Case, chi_square, chi_square_bound
+from remote_scenes.campaign import draws
+from remote_scenes.campaign.regions import Polygons, Roads, Slots
+from remote_scenes.campaign.distributions import read_rule
+from remote_scenes.campaign.objects import Group, Item
+from remote_scenes.campaign.placement import place_all
+from remote_scenes.campaign.text import CampaignError, Node, read_text
+from remote_scenes.campaign.variables import Draw, Variables, read_variables
+
+N = 10_000
+CELLS = 25
+
+
+class Distributions(Case):
+    def drawn(self, text, name="x", count=N, seed=5):
+        (self.folder / "v.yaml").write_text(text)
+        variables = read_variables(read_text(self.folder / "v.yaml"))
+        return [variables.values(seed, i, count)[name] for i in range(count)]
+
+    def held(self, values, cumulative):
+        """chi-square of values against a cumulative distribution, in cells of even probability."""
+        counts = Counter(min(CELLS - 1, int(CELLS * cumulative(v))) for v in values)
+        return chi_square([counts[i] for i in range(CELLS)], [len(values) / CELLS] * CELLS)
+
+    def test_continuous_kinds(self):
+        cut = NormalDist(3, 2)
+        low, high = cut.cdf(1), cut.cdf(4)
+        kinds = {"uniform: [-2, 6]": lambda v: (v + 2) / 8, "normal: [3, 2]": cut.cdf,
+                 "normal: [3, 2], within: [1, 4]": lambda v: (cut.cdf(v) - low) / (high - low),
+                 "log_uniform: [0.01, 10]": lambda v: math.log(v / 0.01) / math.log(1000)}
+        for kind, cumulative in kinds.items():
+            values = self.drawn(f"x: {{{kind}}}")
+            self.assertLess(self.held(values, cumulative), chi_square_bound(CELLS), kind)
+            # The negative control: draws that lie 3 % of the range too high.
+            self.assertGreater(self.held(values, lambda v: min(1, cumulative(v) ** 1.1)), chi_square_bound(CELLS), kind)
+
+    def test_points_that_fill_the_range_evenly(self):
+        for how in ("latin", "sobol"):
+            values = self.drawn(f"x: {{uniform: [0, 1], draw: {how}}}")
+            counts = Counter(int(CELLS * v) for v in values)
+            self.assertLess(chi_square([counts[i] for i in range(CELLS)], [N / CELLS] * CELLS), 1, how)
+            random = Counter(int(CELLS * v) for v in self.drawn("x: {uniform: [0, 1]}"))
+            self.assertGreater(chi_square([random[i] for i in range(CELLS)], [N / CELLS] * CELLS), 1)
+        self.assertEqual(sorted(int(500 * v) for v in self.drawn("x: {uniform: [0, 1], draw: latin}", count=500)), list(range(500)))
+        for dimension in range(draws.SOBOL_DIMENSIONS):
+            self.assertEqual(sorted(int(256 * draws.sobol(i, dimension, "s")) for i in range(256)), list(range(256)))
+        # The first four dimensions in pairs: as many points in every cell of 8 x 8.
+        for a, b in itertools.combinations(range(4), 2):
+            cells = Counter((int(8 * draws.sobol(i, a, 1)), int(8 * draws.sobol(i, b, 1))) for i in range(256))
+            self.assertEqual(set(cells.values()), {4}, (a, b))
+
+    def test_two_variables_are_independent(self):
+        for how in ("random", "latin", "sobol"):
+            text = f"x: {{uniform: [0, 5], draw: {how}}}\ny: {{uniform: [0, 5], draw: {how}}}\nboth: [$x, $y]"
+            cells = Counter((int(x), int(y)) for x, y in self.drawn(text, "both"))
+            counts = [cells[i, j] for i in range(5) for j in range(5)]
+            self.assertLess(chi_square(counts, [N / 25] * 25), chi_square_bound(25), how)
+        same = Counter((int(x), int(y)) for x, y in self.drawn("x: {uniform: [0, 5]}\nboth: [$x, $x]", "both"))
+        self.assertGreater(chi_square([same[i, j] for i in range(5) for j in range(5)], [N / 25] * 25), chi_square_bound(25))
+
+    def test_counted_kinds(self):
+        weights = [3, 1, 0, 2]
+        values = Counter(self.drawn("x: {choice: [a, b, c, d], weights: [3, 1, 0, 2]}"))
+        self.assertEqual(values["c"], 0)
+        counts = [values[k] for k in "abd"]
+        self.assertLess(chi_square(counts, [N * w / 6 for w in weights if w]), chi_square_bound(3))
+        self.assertGreater(chi_square(counts, [N / 3] * 3), chi_square_bound(3))
+        whole = Counter(self.drawn("x: {integers: [-2, 4]}"))
+        self.assertEqual(sorted(whole), list(range(-2, 5)))
+        self.assertLess(chi_square(whole.values(), [N / 7] * 7), chi_square_bound(7))
+        dates = self.drawn("x: {uniform: [2026-06-21T06:00:00Z, 2026-06-21T11:59:59Z]}")
+        hours = Counter(d[11:13] for d in dates)
+        self.assertEqual(sorted(hours), ["06", "07", "08", "09", "10", "11"])
+        self.assertLess(chi_square(hours.values(), [N / 6] * 6), chi_square_bound(6))
+
+    def test_grid_and_zip(self):
+        text = "a: {grid: [1, 2, 3]}\nb: {zip: [u, v]}\nc: {zip: [U, V]}\nall: [$a, $b, $c]"
+        values = self.drawn(text, "all", count=12)
+        self.assertEqual(values[:4], [[1, "u", "U"], [2, "u", "U"], [3, "u", "U"], [1, "v", "V"]])
+        self.assertEqual(set(Counter(map(tuple, values)).values()), {2})
+        self.assertEqual(len(set(map(tuple, values))), 6)
+
+    def test_conditional(self):
+        text = "k: {choice: [low, high], weights: [1, 3]}\nx: {by: k, cases: {low: {uniform: [0, 1]}, high: {uniform: [$edge, 3]}}}\nedge: 2\nboth: [$k, $x]"
+        values = self.drawn(text, "both")
+        for case, low, share in (("low", 0, 0.25), ("high", 2, 0.75)):
+            mine = [x - low for k, x in values if k == case]
+            self.assertLess(chi_square([len(mine), N - len(mine)], [N * share, N * (1 - share)]), chi_square_bound(2))
+            self.assertLess(self.held(mine, lambda v: v), chi_square_bound(CELLS))
+
+    def test_a_new_variable_changes_no_other(self):
+        before = self.drawn("x: {uniform: [0, 1]}\ny: {normal: [0, 1], draw: latin}\nb: [$x, $y]", "b", 50)
+        after = self.drawn("new: {uniform: [0, 1]}\ny: {normal: [0, 1], draw: latin}\nx: {uniform: [0, 1]}\nb: [$x, $y]", "b", 50)
+        self.assertEqual(before, after)
+        self.assertNotEqual(before, self.drawn("x: {uniform: [0, 1]}\ny: {normal: [0, 1], draw: latin}\nb: [$x, $y]", "b", 50, seed=6))
+
+    def test_permutations(self):
+        for count in (1, 2, 3, 17, 1000):
+            self.assertEqual(sorted(draws.shuffled(i, count, "p") for i in range(count)), list(range(count)))
+        large = (1 << 16) + 1  # by another way than small ones
+        self.assertEqual(len({draws.shuffled(i, large, "p") for i in range(large - 500, large)} & set(range(large))), 500)
+        moved = Counter(8 * draws.shuffled(i, large, "q") // large for i in range(2000))
+        self.assertLess(chi_square(moved.values(), [250] * 8), chi_square_bound(8))
+        firsts = Counter(draws.shuffled(0, 8, seed) for seed in range(N))
+        self.assertLess(chi_square(firsts.values(), [N / 8] * 8), chi_square_bound(8))
+
+
+class Places(unittest.TestCase):
+    def test_polygons_are_filled_evenly(self):
+        """An L of three squares, with a hole in none: as many places in each."""
+        shape = Polygons((((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)),))
+        found = [shape.place(0, lambda name, i=i: draws.unit(i, name)) for i in range(N)]
+        cells = Counter((int(x), int(y)) for x, y, _ in filter(None, found))
+        self.assertEqual(sorted(cells), [(0, 0), (0, 1), (1, 0)])
+        there = sum(cells.values())
+        self.assertLess(chi_square(cells.values(), [there / 3] * 3), chi_square_bound(3))
+        self.assertTrue(shape.holds_all([(0.1, 0.1), (0.9, 0.1), (0.9, 0.9), (0.1, 0.9)]))
+        # All corners are inside, the notch is not.
+        self.assertFalse(shape.holds_all([(1.9, 0.9), (0.9, 1.9), (0.1, 1.1), (1.1, 0.1)]))
+
+    def test_roads_are_filled_by_length_and_headings_follow(self):
+        roads = Roads((((0, 0), (0, 30)), ((0, 50), (10, 50))), 6, 1.5)
+        found = [roads.place(0, lambda name, i=i: draws.unit(i, name)) for i in range(N)]
+        cells = Counter(round(h) for _, _, h in found)
+        # North and south three times as often as east and west.
+        self.assertLess(chi_square([cells[k] for k in (0, 180, 90, 270)], [N * s / 8 for s in (3, 3, 1, 1)]), chi_square_bound(4))
+        for x, y, heading in found[:200]:
+            side = {0: x, 180: -x, 90: 50 - y, 270: y - 50}[round(heading)]
+            self.assertAlmostEqual(side, 1.5)  # on the right of the way that is headed
+
+    def test_slots_are_taken_once(self):
+        slots = Slots(tuple((float(i), 0.0, 0.0) for i in range(12)))
+        self.assertEqual(sorted(slots.place(i, lambda name: 0.3)[0] for i in range(12)), list(range(12)))
+        self.assertIsNone(slots.place(12, lambda name: 0.3))
+
+    def placed(self, count, places, spacing=0.0):
+        number = lambda value: read_rule(Node(value, "c.yaml", 3, 1), "n")
+        item = Item("car", "car", "car", 1, {}, None, Node({}, "c.yaml", 4, 1))
+        group = Group("g", (item,), number(count), Slots(places), None, spacing, True, number(0), None, 9, Node({}, "c.yaml", 5, 1))
+        draw = Draw(Variables({}, (), {}, {}), 1, 0, 1)
+        return place_all([group], draw, lambda place: ((-1, -2, 0), (1, 2, 1)), lambda on, x, y: 0.0)
+
+    def test_slots_without_room_are_left_out(self):
+        """Eight slots a metre apart hold things that are 2 m wide with 1 m between them: two for certain, four never."""
+        places = tuple((float(i), 0.0, 0.0) for i in range(8))
+        wide = tuple((3.0 * i, 0.0, 0.0) for i in range(8))
+        self.assertEqual(sorted(p.position_m[0] for p in self.placed(8, wide, 1.0)), [3.0 * i for i in range(8)])
+        xs = sorted(p.position_m[0] for p in self.placed(2, places, 1.0))
+        self.assertGreaterEqual(xs[1] - xs[0], 3)
+        for count, said in ((4, "c.yaml:5:1: error: sample 0: object \\d of 'g': no place has room in 8 attempts"), (9, "c.yaml:3:1: error: sample 0: 9 objects for 8 places")):
+            with self.assertRaisesRegex(CampaignError, said):
+                self.placed(count, places, 1.0)
+
+
+if __name__ == "__main__":
+    unittest.main()

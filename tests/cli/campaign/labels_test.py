@@ -1,0 +1,209 @@
+"""Labels against a plain ray caster of the tests' own: masks, oriented boxes, 3-D boxes, occlusion, truncation; and spectra against the image."""
+import json
+import unittest
+
+import numpy as np
+
+import remote_scenes as rs
+from kit import CAMPAIGN, SCENE, Boxes, Case
+from remote_scenes.campaign import read_campaign
+from remote_scenes.campaign.boxes import smallest
+from remote_scenes.campaign.sample import Maker
+
+SENSORS = """\
+scene: none.h5
+sun: {direction: {zenith_deg: 40, azimuth_deg: 120}}
+sky: {kind: clear}
+max_nodes: 2
+sensors:
+  - {kind: orthographic, name: chip, columns: 56, rows: 44, gsd_m: 0.4, center_m: [1, 0], paths: 4, bands: &b [{name: red, center_um: 0.65, fwhm_um: 0.03}, {name: nir, center_um: 0.85, fwhm_um: 0.03}]}
+  - {kind: frame_camera, name: drone, columns: 60, rows: 48, pitch_um: 100, focal_length_mm: 10, position_m: [4, -22, 20], look_at_m: [0, -3, 0], paths: 4, bands: *b}
+"""
+PARTS = {"car": [((-0.9, -2.2, 0), (0.9, 2.2, 1.4))], "truck": [((-1.2, -4, 0.9), (1.2, 2, 3.4)), ((-1, 2.1, 0), (1, 4, 2.6))]}
+WHOLE = {"car": ((-0.9, -2.2, 0), (0.9, 2.2, 1.4)), "truck": ((-1.2, -4, 0), (1.2, 4, 3.4))}
+ROOF = ((-8, -1, 5), (8, 1.5, 5.2))
+FINE = 6  # rays of the caster across a pixel
+
+
+def rays(name, x, y):
+    """Origins and directions of places in the pictures of the two sensors, from their definitions."""
+    if name == "chip":
+        origin = np.stack([1 + (x - 28) * 0.4, (22 - y) * 0.4, np.full_like(x, 1000.0)], axis=-1)
+        return origin, np.broadcast_to([1e-12, 1e-12, -1.0], origin.shape)
+    position, target = np.array([4.0, -22, 20]), np.array([0.0, -3, 0])
+    ahead = (target - position) / np.linalg.norm(target - position)
+    right = np.cross(ahead, [0, 0, 1])
+    right /= np.linalg.norm(right)
+    down = np.cross(ahead, right)
+    d = ahead * 0.01 + ((x - 30) * 1e-4)[:, None] * right + ((y - 24) * 1e-4)[:, None] * down
+    return np.broadcast_to(position, d.shape), d
+
+
+def projected(name, place):
+    """A place in the picture: by intersecting with the plane of the sensor, not by a matrix."""
+    if name == "chip":
+        return np.array([(place[0] - 1) / 0.4 + 28, 22 - place[1] / 0.4])
+    origin, d = rays(name, np.array([30.0, 31.0, 30.0]), np.array([24.0, 24.0, 25.0]))
+    # origin + t (d0 + u (d1 - d0) + v (d2 - d0)) = place
+    solved = np.linalg.solve(np.stack([d[0], d[1] - d[0], d[2] - d[0]], axis=1), place - origin[0])
+    return np.array([30 + solved[1] / solved[0], 24 + solved[2] / solved[0]])
+
+
+def placed(point, one):
+    a = np.radians(one["heading_deg"])
+    x, y, z = np.array(point) * one["scale"]
+    return np.array(one["position_m"]) + [x * np.cos(a) + y * np.sin(a), -x * np.sin(a) + y * np.cos(a), z]
+
+
+class Labels(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        case = cls("made")
+        case.setUp()
+        cls.addClassCleanup(case.doCleanups)
+        text = CAMPAIGN.replace("{integers: [3, 5]}", "13").replace("[-12, -12], [12, -12], [12, 12], [-12, 12]",
+                                                                    "[-11, -10], [13, -10], [13, 10], [-11, 10]").replace("spacing_m: 0.5", "spacing_m: 0.1")
+        text = text.replace("truck: {place: truck}", "truck: {place: truck, scale: {uniform: [0.7, 1.1]}}").replace("seed: 3", "seed: 4\nkeep: [image, error, truth, classes]")
+        campaign = read_campaign(case.write(text, SCENE, SENSORS))
+        cls.path = Maker(campaign, case.folder / "out", "v").make(2)
+        cls.record = json.loads((cls.path / "sample.json").read_text())
+        cls.caster = Boxes()
+        cls.caster.add(99, *ROOF)
+        cls.caster.add(98, (-30, -30, -1), (30, 30, 0))
+        for number, one in enumerate(cls.record["objects"], 1):
+            for low, high in PARTS[one["item"]]:
+                cls.caster.add(number, low, high, one["position_m"], one["heading_deg"], one["scale"])
+        cls.traced = {}
+        cls.images = {i["name"]: i for i in cls.record["images"]}
+
+    def made(self):
+        pass
+
+    @classmethod
+    def seen(cls, name):
+        """The owner of every fine place, as (rows, FINE, columns, FINE)."""
+        if name not in cls.traced:
+            w, h = cls.images[name]["width"], cls.images[name]["height"]
+            x, y = np.meshgrid((np.arange(w * FINE) + 0.5) / FINE, (np.arange(h * FINE) + 0.5) / FINE)
+            cls.traced[name] = cls.caster.trace(*rays(name, x.ravel(), y.ravel())).reshape(h, FINE, w, FINE)
+        return cls.traced[name]
+
+    @classmethod
+    def alone(cls, name, number):
+        """Fine places (x, y) of the picture, and beyond its edges, at which an object is met when there is nothing else."""
+        if (name, number) not in cls.traced:
+            one = cls.record["objects"][number - 1]
+            (x0, y0, z0), (x1, y1, z1) = WHOLE[one["item"]]
+            corners = np.array([projected(name, placed([x, y, z], one)) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)])
+            low, high = np.floor(corners.min(axis=0)) - 1, np.ceil(corners.max(axis=0)) + 1
+            x, y = (g.ravel() for g in np.meshgrid(*(np.arange(low[i] + 0.5 / FINE, high[i], 1 / FINE) for i in (0, 1))))
+            met = cls.caster.trace(*rays(name, x, y), number) == number
+            cls.traced[name, number] = np.stack([x[met], y[met]], axis=-1)
+        return cls.traced[name, number]
+
+    @staticmethod
+    def mask(label):
+        rows, columns = label["segmentation"]["size"]
+        flat = np.repeat(np.arange(len(label["segmentation"]["counts"])) % 2, label["segmentation"]["counts"])
+        return flat.reshape(columns, rows).T.astype(bool)
+
+    def test_masks_and_shares(self):
+        hidden = cut = 0
+        for name, image in self.images.items():
+            seen = self.seen(name)
+            labels = {label["object"]: label for label in image["labels"]}
+            self.assertGreater(len(labels), 7)
+            for number in range(1, len(self.record["objects"]) + 1):
+                share = (seen == number).mean(axis=(1, 3))
+                if number not in labels:
+                    self.assertLess(share.max(), 1)  # no pixel shows nothing else
+                    continue
+                label, mask = labels[number], self.mask(labels[number])
+                self.assertTrue(mask[share == 1].all(), (name, number))
+                self.assertFalse(mask[share == 0].any(), (name, number))
+                rows, columns = np.nonzero(mask)
+                self.assertEqual(label["bbox"], [columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1])
+                self.assertEqual(label["area"], mask.sum())
+                alone = self.alone(name, number)
+                inside = ((alone > 0) & (alone < [image["width"], image["height"]])).all(axis=1).sum()
+                occlusion, truncation = 1 - (seen == number).sum() / inside, 1 - inside / len(alone)
+                self.assertAlmostEqual(label["occlusion"], occlusion, delta=0.02, msg=(name, number))
+                self.assertAlmostEqual(label["truncation"], truncation, delta=0.02, msg=(name, number))
+                hidden += 0.05 < occlusion < 0.95
+                cut += 0.05 < truncation < 0.95
+        self.assertGreater(min(hidden, cut), 2)  # both happen
+
+    def test_oriented_boxes(self):
+        for name, image in self.images.items():
+            for label in image["labels"]:
+                one = self.record["objects"][label["object"] - 1]
+                points = self.alone(name, label["object"])
+                middle = np.mean(WHOLE[one["item"]], axis=0)
+                step = projected(name, placed(middle + [0, 1e-3, 0], one)) - projected(name, placed(middle, one))
+                ahead = step / np.linalg.norm(step)
+                right = np.array([-ahead[1], ahead[0]])
+                box = np.array(label["obb"])
+                self.assertEqual(label["obb_of"], "silhouette")
+                self.assertGreater(((box[0] - box[3]) / np.linalg.norm(box[0] - box[3])) @ ahead, 0.9995)
+                for axis, first, second in ((ahead, box[0], box[3]), (right, box[1], box[0])):
+                    self.assertAlmostEqual(first @ axis, (points @ axis).max(), delta=0.5, msg=name)
+                    self.assertAlmostEqual(second @ axis, (points @ axis).min(), delta=0.5, msg=name)
+
+    def test_boxes_in_space(self):
+        for name, image in self.images.items():
+            for label in image["labels"]:
+                one = self.record["objects"][label["object"] - 1]
+                low, high = WHOLE[one["item"]]
+                for k, (place, at) in enumerate(zip(label["box_3d_m"], label["box_3d_px"])):
+                    wanted = placed([(low, high)[k & 1][0], (low, high)[k >> 1 & 1][1], (low, high)[k >> 2][2]], one)
+                    np.testing.assert_allclose(place, wanted, atol=1e-5)
+                    np.testing.assert_allclose(at, projected(name, wanted), atol=1e-4)
+                self.assertEqual(one["position_m"][2], 0)
+                if name == "drone":
+                    self.assertAlmostEqual(label["gsd_m"], label["range_m"] / 100, delta=0.02 * label["gsd_m"])
+
+    def test_spectra_are_those_of_the_mask(self):
+        for name, image in self.images.items():
+            radiance, error = rs.open_envi(self.path / f"{name}.img").values, rs.open_envi(self.path / f"{name}_error.img").values
+            for label in image["labels"]:
+                mask = self.mask(label)
+                for i, band in enumerate(("red", "nir")):
+                    self.assertAlmostEqual(label["spectrum"][band] / radiance[i][mask].mean(), 1, places=5)
+                    self.assertAlmostEqual(label["spectrum_error"][band] / (np.sqrt((error[i][mask].astype(float) ** 2).sum()) / mask.sum()), 1, places=5)
+                self.assertTrue(0 <= label["in_shadow"] <= 1 and 0 <= label["incidence_deg"] <= 180)
+
+    def test_objects_keep_apart(self):
+        """Footprints from the records: no corner of one lies within another."""
+        def own(place, one):
+            dx, dy = np.array(place[:2]) - one["position_m"][:2]
+            a = np.radians(one["heading_deg"])
+            return np.array([dx * np.cos(a) - dy * np.sin(a), dx * np.sin(a) + dy * np.cos(a)]) / one["scale"]
+
+        for a in self.record["objects"]:
+            low, high = WHOLE[a["item"]]
+            for x in np.linspace(low[0], high[0], 5):
+                for y in np.linspace(low[1], high[1], 9):
+                    place = placed([x, y, 0], a)
+                    self.assertTrue(-11 <= place[0] <= 13 and -10 <= place[1] <= 10)
+                    for b in self.record["objects"]:
+                        if b is not a:
+                            near = own(place, b)
+                            (x0, y0, _), (x1, y1, _) = WHOLE[b["item"]]
+                            self.assertFalse(x0 <= near[0] <= x1 and y0 <= near[1] <= y1)
+
+
+class Shapes(unittest.TestCase):
+    def test_the_smallest_box(self):
+        rng = np.random.default_rng(3)
+        for angle in rng.uniform(0, np.pi, 20):
+            turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+            points = np.vstack([rng.uniform([-4, -1], [4, 1], (50, 2)), [[-4, -1], [4, -1], [4, 1], [-4, 1]]]) @ turn.T
+            box = smallest(points)
+            self.assertAlmostEqual(np.linalg.norm(box[0] - box[1]) * np.linalg.norm(box[1] - box[2]), 16)
+            for corner in np.array([[-4, -1], [4, -1], [4, 1], [-4, 1]]) @ turn.T:
+                self.assertLess(np.linalg.norm(box - corner, axis=1).min(), 1e-9)
+
+
+if __name__ == "__main__":
+    unittest.main()
