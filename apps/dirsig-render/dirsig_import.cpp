@@ -102,7 +102,7 @@ bool tell(const dirsig::Ledger& ledger, bool strict) {
                                       (e.note.empty() ? "" : ": " + e.note)});
   }
   if (told > kTold)
-    emit({Dr::import_more, strf("and %zu more (--account FILE.json, or --convert FOLDER)", told - kTold)});
+    emit({Dr::import_more, strf("and %zu more (--import-report FILE.json, or --convert FOLDER)", told - kTold)});
   note(
       strf("import: %zu elements and keys, %zu exact, %zu converted, %zu approximated, %zu ignored-harmless, %zu "
            "unsupported",
@@ -123,9 +123,9 @@ bool is_of_dirsig(const std::string& path) {
 void check_import_usage(const RenderOptions& o) {
   if (o.account.empty() && o.convert.empty() && o.search.empty() && !o.strict) return;
   if (!is_of_dirsig(o.simulation))
-    throw UsageError("--path, --account, --convert and --strict go with a simulation of DIRSIG (.sim, .jsim)");
+    throw UsageError("--path, --import-report, --convert and --strict go with a simulation of DIRSIG (.sim, .jsim)");
   if (!o.convert.empty() && (!o.account.empty() || !o.settings.empty()))
-    throw UsageError("--convert goes without --account and --set");
+    throw UsageError("--convert goes without --import-report and --set");
 }
 
 Simulation import_simulation(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
@@ -155,7 +155,7 @@ Simulation import_simulation(const RenderOptions& o, const SimulationCallbacks& 
   }
   if (!tell(ledger, o.strict))
     throw Error(Where{o.simulation, 0, 0, {}, -1}, "a strict import leaves nothing out",
-                "--account FILE.json tells every line");
+                "--import-report FILE.json tells every line");
   const Params root = Params::parse_made(made.yaml, o.simulation, made.origins, o.settings);
   Simulation sim = read_simulation_tree(root, o.simulation, callbacks, o.settings);
   for (const std::string& file : ledger.files()) sim.files.push_back(file);

@@ -71,7 +71,7 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
               t.paths, p.spec.target));
     if (!t.enough)
       emit({Dr::heat_paths,
-            strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target)});
+            strf("heat: %u paths of a face are the most, and too few for target_error_k %g", kMostPaths, p.spec.target)});
     check_size(p, sim);
   }
   std::optional<LeftOut> left_out;
@@ -94,7 +94,7 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
   if (bar) bar->finish();
   if (left_out) note("heat: " + left_out->sentence(found.result));
   if (left_out && left_out->bound(found.result) > sim.heat->leave_out)
-    emit({Dr::heat_left_out, strf("heat: that is more than the %g K of leave_out_k", sim.heat->leave_out)});
+    emit({Dr::heat_left_out, strf("heat: that is more than the %g K of influence_cutoff_k", sim.heat->leave_out)});
   return found;
 }
 
@@ -229,7 +229,7 @@ bool asks_heat(const Scene& scene, const Simulation& sim, const RenderOptions& o
     throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
   if (!options.heat_operator.empty() && sim.heat->leave_out > 0)
     throw Error(sim.heat->where, "--heat-operator has the paths of all elements, and some are to be left out",
-                "drop 'leave_out_k' or --heat-operator");
+                "drop 'influence_cutoff_k' or --heat-operator");
   return true;
 }
 
@@ -366,7 +366,7 @@ std::string forecast(const std::shared_ptr<const Scene>& scene, const Simulation
                      later + 1, 100 * seeing)
               : std::string{}) +
          (p.spec.target > 0
-              ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
+              ? strf("heat: that is with %u paths of a face; target_error_k asks a pilot for their number\n", p.spec.paths)
               : std::string{});
 }
 

@@ -1,4 +1,4 @@
-// Elements that do not matter to what the sensors see: left out of the search for temperatures (`heat: {leave_out_k}`).
+// Elements that do not matter to what the sensors see: left out of the search for temperatures (`heat: {influence_cutoff_k}`).
 #pragma once
 #include <optional>
 #include <string>

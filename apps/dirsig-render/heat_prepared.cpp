@@ -83,7 +83,7 @@ std::vector<RestInterval> rests_of(const Tracer& tracer, const Simulation& sim) 
       sim.heat->where,
       strf("what moves, comes or goes rests in %zu intervals of the span, and %zu are the most", rests.size(),
            spec.intervals),
-      strf("'intervals: %zu' (rays and memory grow with it), a longer step_s, or 'intervals: 1': what moves then "
+      strf("'geometry_intervals: %zu' (rays and memory grow with it), a longer step_s, or 'geometry_intervals: 1': what moves then "
            "leaves the exchange, and what comes and goes is in it for its share of the span",
            rests.size()));
 }

@@ -9,6 +9,7 @@
 #include "base/interrupt.h"
 #include "base/outputs.h"
 #include "base/progress.h"
+#include "base/renamed.h"
 #include "budget_options.h"
 #include "continued.h"
 #include "deck_told.h"
@@ -52,6 +53,11 @@ namespace {
 int print(const std::string& list) {
   std::fputs(list.c_str(), stdout);
   return 0;
+}
+
+// Old names of keys and options that were met since the last call.
+void report_renamed() {
+  for (const RenamedUse& use : take_renamed_uses()) emit({Dr::renamed, text_of(use)});
 }
 
 // The row of a diagnostic, by its code.
@@ -261,6 +267,7 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
 Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
   Simulation sim = is_of_dirsig(o.simulation) ? import_simulation(o, callbacks, alone)
                                               : read_simulation(o.simulation, callbacks, o.settings);
+  report_renamed();
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   if (sim.heat) sim.heat->spec.seed = sim.pipeline.seed;
@@ -293,6 +300,7 @@ void find_beforehand(const std::shared_ptr<const Scene>& scene, const Simulation
 void mute_and_load(const RenderOptions& o) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
   for (const std::string& code : o.mute) mute(diagnostic_code(code));
+  report_renamed();
 }
 
 }  // namespace

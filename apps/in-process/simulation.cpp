@@ -7,7 +7,9 @@
 #include "apps/in-process/border.h"
 #include "apps/in-process/rays.h"
 #include "apps/in-process/remote_scenes.h"
+#include "base/diagnostics.h"
 #include "base/error.h"
+#include "base/renamed.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
@@ -73,6 +75,7 @@ struct rs_simulation {
   rs_simulation(const char* path, const char* name, suite::Told& told)
       : sim(suite::simulation_of(path)), sensor(suite::sensor_of(sim, name)), scene(suite::scenes_of(sim)) {
     using namespace suite;
+    for (const RenamedUse& use : take_renamed_uses()) told.push_back(line_of({Dr::renamed, text_of(use)}));
     const Where where{sim.path, 0, 0, {}, -1};
     if (sensor.states().size() != 1 || sensor.tasks().empty())
       throw Error(where, strf("sensor '%s' has %zu spectral states", sensor.name().c_str(), sensor.states().size()),

@@ -63,7 +63,7 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.option("--report", o.report,
              "write the findings as JSON (- = standard output); what each step took is plotted beside it in FILE.html",
              "FILE.json");
-  cli.option("--account", o.account,
+  cli.option("--import-report", o.account,
              "of a scene of DIRSIG: write what became of every element and key of its files, with its line, as JSON",
              "FILE.json");
   cli.option("--convert", o.convert,

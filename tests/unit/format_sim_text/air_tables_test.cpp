@@ -182,14 +182,14 @@ TEST_F(AirTables, FourCurveAirIsTheSameEverywhere) {
     for (const float v : {0.1f, 1e-9f, 1e-4f, 0.02f}) values.insert(values.end(), 3, v);
   writer.put("/Conditions/clear", values, "1", 3);
   writer.close();
-  const auto air = read("tables: [{file: curves.hdf, longest_m: 5000}]");
+  const auto air = read("tables: [{file: curves.hdf, max_range_m: 5000}]");
   ASSERT_TRUE(air->sights && air->sky && air->sun);
   EXPECT_TRUE(air->sights->everywhere);
   PathSpectra sky;
   air->sky->table.at(std::array{20 * kDegree}, sky);
   EXPECT_NEAR(sky.radiance[1], 200 / kPi, 1e-4);
-  EXPECT_THAT(told("tables: [curves.hdf]"), HasSubstr("{file: ..., longest_m: N}"));
-  EXPECT_THAT(told("tables: [{file: curves.hdf, longest_m: 5000, condition: cleer}]"), HasSubstr("clear"));
+  EXPECT_THAT(told("tables: [curves.hdf]"), HasSubstr("{file: ..., max_range_m: N}"));
+  EXPECT_THAT(told("tables: [{file: curves.hdf, max_range_m: 5000, condition: cleer}]"), HasSubstr("clear"));
 }
 
 TEST_F(AirTables, FaultsAreToldWhereTheyStand) {

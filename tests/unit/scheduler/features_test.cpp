@@ -77,7 +77,7 @@ TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
   EXPECT_EQ(said(water, sun, {}), "1 smooth material");
   EXPECT_EQ(said(grey, sun, {}), "no material passes light smoothly");
   EXPECT_EQ(said(water, none, {}), "no sun, moon or lamp in the simulation");
-  EXPECT_EQ(said(water, sun, off), "`light_through_refraction: false`");
+  EXPECT_EQ(said(water, sun, off), "`manifold_nee: false`");
   EXPECT_EQ(said(water, sun, paper), "the paper's estimator");
 }
 
