@@ -25,8 +25,6 @@ constexpr TechniqueCondition kMedia{[](const Facts& f) { return f.media > 0; }, 
 
 bool behind_interfaces(const Facts& f) { return uses(Technique::manifold_nee, f); }
 
-constexpr TechniqueCondition kLightSampling[] = {
-    {[](const Facts& f) { return f.lights; }, "a light", "nothing shines in the simulation"}, kSampled};
 constexpr TechniqueCondition kManifoldNee[] = {kSmooth, kSmall, kStandard, kSampled, kManifold};
 constexpr TechniqueCondition kMultiVertex[] = {
     kMedia, {behind_interfaces, "MNEE", "no light is sampled through smooth interfaces"}};
@@ -41,6 +39,8 @@ constexpr TechniqueCondition kSplitting[] = {
 constexpr TechniqueCondition kCausticGuiding[] = {
     {[](const Facts& f) { return f.not_matte > 0; }, "a material that is not Lambertian", "all materials are Lambertian"},
     kSmall,
+    {[](const Facts& f) { return f.rough > 0 || f.sized_lights; }, "a rough surface, or a source with a size",
+     "no path meets point sources by way of mirrors and smooth interfaces"},
     kStandard,
     kSampled,
     {[](const Facts& f) { return f.options.gloss_photons > 0; }, "`caustic_guiding: true`", "`caustic_guiding: false`"},
@@ -55,9 +55,6 @@ constexpr TechniqueCondition kAdjacency[] = {
     kSampled};
 
 constexpr TechniqueRow kRows[] = {
-    {Technique::light_sampling, "NEE",
-     "Next-event estimation: a sample of each light at every vertex, weighted against continuations by MIS.",
-     kLightSampling},
     {Technique::manifold_nee, "MNEE",
      "Manifold next-event estimation: sun, moon and lamps are connected through smooth interfaces (water, panes, "
      "lenses) from every vertex. Where no material refracts smoothly nothing of it is made, and it costs nothing.",
@@ -99,15 +96,19 @@ std::string explained(const TechniqueRow& row) {
 TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options) {
   TechniqueFacts f;
   f.options = options;
-  f.lights = sources.any();
+  constexpr double kNever = 1e-12;
   for (const LightSpecPtr& light : sources.lights) {
-    f.small_lights = f.small_lights || light->in_scene() || !light->hardly_met(1).empty();
-    f.beams = f.beams || (!light->in_scene() && !light->hardly_met(1).empty());
+    const size_t parts = light->in_scene() ? light->entries() : light->hardly_met(1).size();
+    f.small_lights = f.small_lights || parts > 0;
+    f.sized_lights = f.sized_lights || parts > light->hardly_met(kNever).size();
+    f.beams = f.beams || (!light->in_scene() && parts > 0);
   }
   f.media = scene.media.size() + (sources.air && sources.air->scattering == AirScattering::traced);
   for (const Material& m : scene.materials) {
-    f.smooth += m.surface.model == "dielectric";
-    f.not_matte += !m.surface.model.empty() && m.surface.model != "lambert";
+    const std::string& model = m.surface.model;
+    f.smooth += model == "dielectric";
+    f.not_matte += !model.empty() && model != "lambert";
+    f.rough += !model.empty() && model != "lambert" && model != "dielectric" && model != "mirror";
   }
   f.real_air = sources.air != nullptr;
   f.field = f.real_air && sources.air->scattering == AirScattering::diffuse;

@@ -15,8 +15,7 @@
 namespace suite {
 
 enum class Technique : uint8_t {
-  light_sampling,    // next-event estimation (NEE)
-  manifold_nee,      // of lights behind smooth interfaces (MNEE)
+  manifold_nee,      // next-event estimation of lights behind smooth interfaces (MNEE)
   multi_vertex_nee,  // of lights behind media under smooth interfaces
   splitting,         // with a light-directed scattering vertex
   caustic_guiding,   // photon-guided sampling of caustics
@@ -26,10 +25,11 @@ enum class Technique : uint8_t {
 // What the conditions look at.
 struct TechniqueFacts {
   PipelineOptions options;
-  bool lights = false;        // anything that can be sampled
   bool small_lights = false;  // sun, moon or lamps: what continuations hardly find
+  bool sized_lights = false;  // of them such as have a size, so that continuations may meet them
   bool beams = false;         // sun or moon
-  size_t media = 0, smooth = 0, not_matte = 0;  // media; materials that refract without roughness; that are not Lambertian
+  size_t media = 0;
+  size_t smooth = 0, not_matte = 0, rough = 0;  // materials: Dirac refraction; not Lambertian; these with wide lobes
   bool real_air = false, field = false, adjacency = false;  // of the air: a profile, a diffuse field, adjacency wanted
 };
 // Of the scene as it was loaded.
