@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "air_told.h"
+#include "air_report.h"
 #include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
@@ -12,11 +12,11 @@
 #include "base/renamed.h"
 #include "budget_options.h"
 #include "continued.h"
-#include "deck_told.h"
+#include "deck_report.h"
 #include "dirsig_import.h"
 #include "dry_checks.h"
 #include "dry_run.h"
-#include "flags_told.h"
+#include "flags_report.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
@@ -104,13 +104,13 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
   }
 }
 
-void tell(const JobReport& r, const Scene& scene) {
+void report_job(const JobReport& r, const Scene& scene) {
   const double paths = static_cast<double>(r.statistics.paths);
   note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer",
             human_count(paths).c_str(), human_count(static_cast<double>(r.statistics.trace.rays)).c_str(),
             paths > 0 ? static_cast<double>(r.statistics.nodes) / paths : 0, 100 * r.share_in_embree));
   note(strf("median relative standard error %.2f %%", 100 * r.median_relative_error));
-  tell_quality(r.quality);
+  report_quality(r.quality);
   note(r.stopped_by);
   if (const TileUse& t = r.tiles; t.built)
     note(
@@ -127,10 +127,10 @@ void tell(const JobReport& r, const Scene& scene) {
     for (const Diagnostic& d : diagnose_shortfall(s.sensor, s.shortfall)) emit(d);
 }
 
-void tell(const JobReport& r, const Scene& scene, const JobOptions& options, const std::string& folder) {
-  tell_of_points(options.heating);
-  if (options.share && (options.share->runs() || r.captures_waiting)) return tell_share(r, *options.share, folder);
-  tell(r, scene);
+void report_job(const JobReport& r, const Scene& scene, const JobOptions& options, const std::string& folder) {
+  report_points(options.heating);
+  if (options.share && (options.share->runs() || r.captures_waiting)) return report_share(r, *options.share, folder);
+  report_job(r, scene);
 }
 
 // Runs the job so that a signal ends it in good order and a result that cannot be written tells what there is.
@@ -163,7 +163,7 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
 // What is told and written of a whole run.
 void conclude(const JobReport& report, const JobOptions& options, const std::string& folder, const Simulation& sim,
               const LoadedScene& loaded, OutputWriter& writer) {
-  tell(report, *loaded.scene, options, folder);
+  report_job(report, *loaded.scene, options, folder);
   for (const auto& reads : loaded.later) note(reads->text());
   write_log(in_folder(folder, "render.json"), report, options);
   if (!report.captures_waiting) write_sensor_logs(sim, writer);
@@ -206,7 +206,7 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
       for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
   note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors, options.pipeline)));
   look_through_tables(sim.sources, scene, sim.sensors);
-  for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
+  for (const std::string& sentence : describe_sources(sim.sources, scene, sim.sensors)) note(sentence);
   for (const Diagnostic& d : diagnose_air(sim.sources, scene, sim.sensors, options)) emit(d);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (size_t s = 0; s < sim.sensors.size(); ++s) {
@@ -240,7 +240,7 @@ std::unique_ptr<StateStore> join_or_open(const RenderOptions& o, const Simulatio
   if (!ranks || ranks->leads()) store = open_store(o, o.output, sim, options);
   options.store = store.get();
   if (!ranks) return store;
-  tell_budget(*ranks, options.budget);
+  broadcast_budget(*ranks, options.budget);
   options.executor = &ranks->executor();
   return store;
 }

@@ -151,7 +151,8 @@ AirSpec::Cloud read_cloud(const Params& p, std::vector<std::string>& notes) {
   c.base = p.number_in("base_m", -1000, 30000, "m above sea level");
   c.top = p.number_in("top_m", c.base + 1, 40000, "m above sea level");
   const auto depth = p.find("optical_depth_550"), content = p.find("content_g_m3");
-  if (!depth == !content) throw p.error("a cloud has either `optical_depth_550` or `content_g_m3`", "give one of the two");
+  if (!depth == !content)
+    throw p.error("a cloud has either `optical_depth_550` or `content_g_m3`", "give one of the two");
   if (content) {
     if (c.particles.data && c.particles.data->relative)
       throw content->error("a content of particles whose extinction is relative", "give `optical_depth_550`");

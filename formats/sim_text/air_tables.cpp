@@ -51,7 +51,7 @@ struct Runs {
 
 // What the text says of a run's geometry stands in place of what the file says.
 void complete(const Params& p, Tape7Block& run) {
-  const bool told = run.geometry.has_value();
+  const bool has_cards = run.geometry.has_value();
   Tape7Geometry g = run.geometry.value_or(Tape7Geometry{2, 0, 0, 0, {}, {}, {}});
   const auto given = [&](const char* key) -> std::optional<double> {
     if (p.kind() != Params::Kind::map) return std::nullopt;
@@ -62,11 +62,11 @@ void complete(const Params& p, Tape7Block& run) {
   const bool sun = run.mode == Tape7Mode::irradiance;
   const auto height = given("observer_height_m"), end = given("end_height_m"), zenith = given("zenith_deg"),
              range = given("range_m"), solar = given("solar_zenith_deg"), azimuth = given("relative_azimuth_deg");
-  if (!told && !(height && (sun ? solar : zenith) && (sun || end || range)))
-    throw Error(run.header, "the cards before this run do not tell its geometry",
+  if (!has_cards && !(height && (sun ? solar : zenith) && (sun || end || range)))
+    throw Error(run.header, "the cards before this run do not state its geometry",
                 sun ? "give observer_height_m and solar_zenith_deg beside the file"
                     : "give observer_height_m, zenith_deg, and end_height_m or range_m beside the file");
-  if (!told) g.path_type = range && !end ? 1 : end && *end >= kTopOfAir ? 3 : 2;
+  if (!has_cards) g.path_type = range && !end ? 1 : end && *end >= kTopOfAir ? 3 : 2;
   if (height) g.observer_height = *height;
   if (end) g.end_height = *end;
   if (zenith) g.zenith = *zenith;
@@ -176,7 +176,7 @@ void read_libradtran_sky(const Params& p, const std::string& path, TabledAirSpec
     sky.alike[SightAxis::observer_height] = p.number_in("observer_height_m", -1000, 1e6, "m above sea level");
   sky.alike[SightAxis::solar_zenith] = run.solar_zenith;
   air.notes.push_back("atmosphere: " + path + ": the sky at one altitude, and " +
-                      (has_irradiance(sky) ? "the Sun there" : "no Sun (edir was not asked for)"));
+                      (has_irradiance(sky) ? "the Sun there" : "no Sun (without edir)"));
   take(air.sky, std::move(sky), "the sky", p);
 }
 

@@ -44,7 +44,8 @@ void read_what_is_kept(const Params& heat, HeatRequest& out) {
   if (const auto least = heat.find("influence_cutoff_k")) {
     out.leave_out = least->as_number_in(0, 10, "K");
     if (out.leave_out > 0 && out.keep_operator)
-      throw least->error("paths of all elements are kept, and some are to be left out", "drop 'influence_cutoff_k' or 'keep'");
+      throw least->error("paths of all elements are kept, and some are to be left out",
+                         "drop 'influence_cutoff_k' or 'keep'");
   }
   if (const auto probes = heat.find("probes"))
     for (const std::string& name : probes->keys()) {
@@ -60,8 +61,9 @@ void read_lateral(const Params& heat, HeatRequest& out) {
   if (!lateral) return;
   out.spec.lateral = lateral->as_bool();
   if (!out.spec.lateral) return;
-  for (const auto& [given, name] :
-       {std::pair{out.spec.audit > 0, "random_walks"}, {out.final_gather, "final_gather"}, {out.leave_out > 0, "influence_cutoff_k"}})
+  for (const auto& [given, name] : {std::pair{out.spec.audit > 0, "random_walks"},
+                                    {out.final_gather, "final_gather"},
+                                    {out.leave_out > 0, "influence_cutoff_k"}})
     if (given)
       throw lateral->error(std::string("conduction along the surface is not known to '") + name + "'",
                            "drop one of them");
@@ -72,7 +74,7 @@ void read_points(const Params& heat, HeatRequest& out) {
   if (!gather) return;
   out.final_gather = gather->as_bool();
   if (out.final_gather && !out.spec.periodic)
-    throw gather->error("points are told apart from their elements in a span that repeats alone",
+    throw gather->error("points differ from their elements in a span that repeats alone",
                         "'repeats: true', or no final_gather");
 }
 

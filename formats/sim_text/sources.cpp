@@ -25,9 +25,9 @@ std::string file_of(const Params& p) {
   return path;
 }
 
-CurveOptions telling() {
+CurveOptions with_warnings() {
   CurveOptions options;
-  options.tell = [](const std::string& path, const std::string& what) { warn(path + ": " + what); };
+  options.on_warning = [](const std::string& path, const std::string& what) { warn(path + ": " + what); };
   return options;
 }
 }  // namespace
@@ -38,7 +38,7 @@ Curve read_curve_value(const Params& p) {
   if (p.kind() == Params::Kind::map) {
     if (const auto x = p.find("wavelength_um"))
       return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
-    CurveOptions options = telling();
+    CurveOptions options = with_warnings();
     options.outside = read_outside(p);
     options.column = static_cast<int>(p.integer("column", 0, 10000, 0));
     options.scale = p.number("scale", 1);
@@ -46,7 +46,7 @@ Curve read_curve_value(const Params& p) {
   }
   const std::string text = p.as_text();
   const bool number = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
-  return number ? Curve::constant(p.as_number()) : read_curve(file_of(p), telling());
+  return number ? Curve::constant(p.as_number()) : read_curve(file_of(p), with_warnings());
 }
 
 namespace {

@@ -93,7 +93,8 @@ constexpr DiagnosticKind kKinds[] = {
     {Dr::bins, kWarning, "bands miss their spectral_error",
      "leave out `spectral_error: 0`, or reduce spectral_step_um"},
     // Temperatures.
-    {Dr::heat_paths, kWarning, "the largest number of paths a face is too few for target_error_k", "raise target_error_k"},
+    {Dr::heat_paths, kWarning, "the largest number of paths a face is too few for target_error_k",
+     "raise target_error_k"},
     {Dr::heat_left_out, kWarning, "elements that are left out change temperatures by more than influence_cutoff_k",
      "reduce influence_cutoff_k, or set it to 0"},
     {Dr::heat_limit, kWarning, "the heat balance neglects something that matters here", "see the text"},

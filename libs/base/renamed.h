@@ -1,5 +1,5 @@
-// Keys of texts and options of programs that have new names. The old names are still read, give the same results and one
-// warning each. One table holds all of them; the reference page is made from it (`docs/reference/renamed.md`).
+// Keys of texts and options of programs that have new names. The old names are still read, give the same results and
+// one warning each. One table holds all of them; the reference page is made from it (`docs/reference/renamed.md`).
 #pragma once
 #include <span>
 #include <string>

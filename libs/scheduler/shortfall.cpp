@@ -63,7 +63,7 @@ std::vector<Diagnostic> diagnose_shortfall(const std::string& sensor, const Shor
                          "disk of the sun, lamps with a surface, rough surfaces or more paths help"});
   if (reports(s, s.truncated, Lack::kCut))
     found.push_back({Dr::truncated_paths, of(s.truncated.problems) +
-                                              "lost light of paths that were truncated at the maximum number of "
+                                              "miss light of paths that were truncated at the maximum number of "
                                               "nodes, " +
                                               share(s, s.truncated) +
                                               "; their standard errors contain it. More max_nodes help"});

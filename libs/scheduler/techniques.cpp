@@ -37,7 +37,8 @@ constexpr TechniqueCondition kSplitting[] = {
      "paths in media behind smooth interfaces have multi-vertex NEE"},
     {[](const Facts& f) { return f.options.side_flights; }, "splitting switched on", "switched off"}};
 constexpr TechniqueCondition kCausticGuiding[] = {
-    {[](const Facts& f) { return f.not_matte > 0; }, "a material that is not Lambertian", "all materials are Lambertian"},
+    {[](const Facts& f) { return f.not_matte > 0; }, "a material that is not Lambertian",
+     "all materials are Lambertian"},
     kSmall,
     {[](const Facts& f) { return f.rough > 0 || f.sized_lights; }, "a rough surface, or a source with a size",
      "no path meets point sources by way of mirrors and smooth interfaces"},

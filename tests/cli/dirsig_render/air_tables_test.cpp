@@ -95,9 +95,9 @@ TEST_F(AirTablesOfOthers, BadInputIsTold) {
   EXPECT_THAT(told("[red.tp7]"),
               AllOf(HasSubstr("sim.yaml:3:"), HasSubstr("the tables of the atmosphere reach from 0.666667 to 1 um, and "
                                                         "band 'green' of sensor 'eye'")));
-  EXPECT_THAT(
-      told("[run.tp7]", "", "[3000, 0, 0]"),
-      AllOf(HasSubstr("sim.yaml:3:"), HasSubstr("and the runs have 170 to 180 degrees"), HasSubstr("angle_tolerance_deg")));
+  EXPECT_THAT(told("[run.tp7]", "", "[3000, 0, 0]"),
+              AllOf(HasSubstr("sim.yaml:3:"), HasSubstr("and the runs have 170 to 180 degrees"),
+                    HasSubstr("angle_tolerance_deg")));
   EXPECT_THAT(told("[run.tp7]", "moon: {direction: {zenith_deg: 10, azimuth_deg: 0}, phase_deg: 0}\n"),
               HasSubstr("a further moon"));
 }

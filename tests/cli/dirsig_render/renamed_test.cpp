@@ -57,32 +57,33 @@ std::string placed(const std::string& objects, const std::string& world) {
 std::vector<Row> simulations() {
   const std::string gas = "heights_m: [0, 1000, 5000], gases: [{name: a, ";
   const std::string cloud = "{profile: us_standard, clouds: [{kind: water, base_m: 900, top_m: 1000, NAME: 3}]}";
-  return {{"guide_to_gloss", "caustic_guiding", "NAME: true\n" + kSun + camera(), "false"},
-          {"light_through_refraction", "manifold_nee", "NAME: false\n" + kSun + camera(), "true"},
-          {"knots", "hero_wavelengths", kSun + camera(", NAME: 2"), "3"},
-          {"target_k", "target_error_k", heat(", NAME: 5"), "6"},
-          {"audit", "random_walks", heat(", paths: 16, NAME: 32"), "64"},
-          {"leave_out_k", "influence_cutoff_k", heat(", paths: 16, NAME: 0.01"), "0.02"},
-          {"intervals", "geometry_intervals", heat(", paths: 16, NAME: 3"), "4"},
-          {"ride", "attached_to",
-           "lamps: [{kind: point, NAME: yard, position_m: [0, 0, 3], intensity: 20}]\n" + camera(), "wall"},
-          {"aerosol_depth_500", "aerosol_optical_depth_500", "sky: {kind: clear, NAME: 0.2}\n" + kSun + camera(), "0.3"},
-          {"depth_550", "optical_depth_550", air(cloud), "4"},
-          {"column_depth", "column_optical_depth", air("{" + gas + "NAME: 0.1, scale_height_m: 900}]}"), "0.2"},
-          {"layer_depths", "layer_optical_depths", air("{" + gas + "NAME: [0.1, 0.2]}]}"), "[0.2, 0.1]"},
-          {"within_deg", "angle_tolerance_deg", tables("tables: [run.tp7], NAME: 3"), "4"},
-          {"within_m", "height_tolerance_m", tables("tables: [run.tp7], angle_tolerance_deg: 3, NAME: 200"), "300"},
-          {"longest_m", "max_range_m", tables("tables: [{file: curves.hdf, NAME: 5000}]"), "6000"}};
+  return {
+      {"guide_to_gloss", "caustic_guiding", "NAME: true\n" + kSun + camera(), "false"},
+      {"light_through_refraction", "manifold_nee", "NAME: false\n" + kSun + camera(), "true"},
+      {"knots", "hero_wavelengths", kSun + camera(", NAME: 2"), "3"},
+      {"target_k", "target_error_k", heat(", NAME: 5"), "6"},
+      {"audit", "random_walks", heat(", paths: 16, NAME: 32"), "64"},
+      {"leave_out_k", "influence_cutoff_k", heat(", paths: 16, NAME: 0.01"), "0.02"},
+      {"intervals", "geometry_intervals", heat(", paths: 16, NAME: 3"), "4"},
+      {"ride", "attached_to", "lamps: [{kind: point, NAME: yard, position_m: [0, 0, 3], intensity: 20}]\n" + camera(),
+       "wall"},
+      {"aerosol_depth_500", "aerosol_optical_depth_500", "sky: {kind: clear, NAME: 0.2}\n" + kSun + camera(), "0.3"},
+      {"depth_550", "optical_depth_550", air(cloud), "4"},
+      {"column_depth", "column_optical_depth", air("{" + gas + "NAME: 0.1, scale_height_m: 900}]}"), "0.2"},
+      {"layer_depths", "layer_optical_depths", air("{" + gas + "NAME: [0.1, 0.2]}]}"), "[0.2, 0.1]"},
+      {"within_deg", "angle_tolerance_deg", tables("tables: [run.tp7], NAME: 3"), "4"},
+      {"within_m", "height_tolerance_m", tables("tables: [run.tp7], angle_tolerance_deg: 3, NAME: 200"), "300"},
+      {"longest_m", "max_range_m", tables("tables: [{file: curves.hdf, NAME: 5000}]"), "6000"}};
 }
 // Of scenes.
 std::vector<Row> scenes() {
-  return {{"longest_m", "max_edge_m", placed("ground: {points: c.las, material: grey, NAME: 30}", "{place: ground}"),
-           "40"},
-          {"turn", "random_heading",
-           placed("field: {plane: {width: 9, depth: 9}, material: grey}, hill: {obj: hill.obj, material: grey}, stone: "
-                  "{obj: stone.obj, material: grey}",
-                  "{place: hill}, {place: stone, on: hill, scatter: {density_per_m2: 0.2, NAME: false}}"),
-           "true"}};
+  return {
+      {"longest_m", "max_edge_m", placed("ground: {points: c.las, material: grey, NAME: 30}", "{place: ground}"), "40"},
+      {"turn", "random_heading",
+       placed("field: {plane: {width: 9, depth: 9}, material: grey}, hill: {obj: hill.obj, material: grey}, stone: "
+              "{obj: stone.obj, material: grey}",
+              "{place: hill}, {place: stone, on: hill, scatter: {density_per_m2: 0.2, NAME: false}}"),
+       "true"}};
 }
 
 std::string with_name(const std::string& text, const std::string& name) {
@@ -90,9 +91,9 @@ std::string with_name(const std::string& text, const std::string& name) {
 }
 // The text with both names.
 std::string with_both(const Row& r) {
-  return std::regex_replace(r.text, std::regex("NAME(: (\\[[^\\]]*\\]|[^,}\\]\n]+))"),
-                            std::string(r.old_name) + "$1" + (r.text.starts_with("NAME") ? "\n" : ", ") + r.new_name +
-                                ": " + r.value);
+  return std::regex_replace(
+      r.text, std::regex("NAME(: (\\[[^\\]]*\\]|[^,}\\]\n]+))"),
+      std::string(r.old_name) + "$1" + (r.text.starts_with("NAME") ? "\n" : ", ") + r.new_name + ": " + r.value);
 }
 
 class Renamed : public ProgramsTest<Renamed> {
@@ -123,7 +124,8 @@ world: [{place: yard}, {place: wall}]
     write("stone.obj", "v -0.5 0 0\nv 0.3 0 0\nv 0 0.4 0\nv 0 0.1 0.5\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
     std::vector<test::LasPoint> points;
     for (int i = 0; i < 36; ++i)
-      points.push_back({500000 + 12.0 * (i % 6) + (i % 6 == 5 ? 60 : 0), 5600000 + 12.0 * (i / 6), 100 + 0.7 * (i % 5)});
+      points.push_back(
+          {500000 + 12.0 * (i % 6) + (i % 6 == 5 ? 60 : 0), 5600000 + 12.0 * (i / 6), 100 + 0.7 * (i % 5)});
     write("c.las", test::las(points));
     h5::Writer writer(*folder_ / "curves.hdf", *folder_ / "curves.hdf");
     writer.put("/SpectralSamples", std::vector<float>{0.4f, 0.5f, 0.6f}, "1", 3);

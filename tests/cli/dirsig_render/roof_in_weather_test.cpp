@@ -108,7 +108,7 @@ TEST_F(RoofInWeather, PointsNeedWhatElementsWereFoundWith) {
   EXPECT_THAT(r.err, HasSubstr("holds temperatures of elements alone, and `final_gather` asks for points"));
   const CommandResult twice = run("dirsig-render sim.yaml -o again --set heat.repeats=false");
   EXPECT_EQ(twice.code, 1);
-  EXPECT_THAT(twice.err, HasSubstr("points are told apart from their elements in a span that repeats alone"));
+  EXPECT_THAT(twice.err, HasSubstr("points differ from their elements in a span that repeats alone"));
 }
 
 // Conduction along the surface changes temperatures; what follows each element for itself does not know it.

@@ -25,8 +25,11 @@ struct Case {
 ModelSpec glass() { return {"dielectric", {}, {{"index", Curve::constant(1.33)}}, {}, nullptr}; }
 ModelSpec mirror() { return {"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr}; }
 ModelSpec gloss() {
-  return {"ward", {{"roughness", 0.08}, {"roughness_y", 0}},
-          {{"diffuse", Curve::constant(0.1)}, {"specular", Curve::constant(0.5)}}, {}, nullptr};
+  return {"ward",
+          {{"roughness", 0.08}, {"roughness_y", 0}},
+          {{"diffuse", Curve::constant(0.1)}, {"specular", Curve::constant(0.5)}},
+          {},
+          nullptr};
 }
 
 enum class Fill { nothing, haze, under_floor };
@@ -146,10 +149,8 @@ std::vector<bool> done(const Case& c) {
     return rendered(c, options) != all;
   };
   return {changes([](auto& o) { o.refracted_sources = false; }),
-          kernel.space == KernelChoice::Space::field && refracted,
-          changes([](auto& o) { o.side_flights = false; }),
-          changes([](auto& o) { o.gloss_photons = 0; }),
-          kernel.space == KernelChoice::Space::lit_air};
+          kernel.space == KernelChoice::Space::field && refracted, changes([](auto& o) { o.side_flights = false; }),
+          changes([](auto& o) { o.gloss_photons = 0; }), kernel.space == KernelChoice::Space::lit_air};
 }
 
 // Scenes and techniques on which a table and the kernels do not agree.
@@ -176,7 +177,8 @@ TEST(Techniques, TheTableAgreesWithTheKernels) {
 
   // Each technique is used in some scene and left out in another.
   for (const TechniqueRow& row : technique_rows()) {
-    const auto used = std::ranges::count_if(kernels, [&](const auto& k) { return k[static_cast<size_t>(row.technique)]; });
+    const auto used =
+        std::ranges::count_if(kernels, [&](const auto& k) { return k[static_cast<size_t>(row.technique)]; });
     EXPECT_GT(used, 0) << row.name;
     EXPECT_LT(used, static_cast<long>(all.size())) << row.name;
   }

@@ -145,7 +145,7 @@ TEST_F(AirTables, GeometryThatTheFileDoesNotSay) {
   std::string text = test::run_text(run);
   write("bare.tp7", text.substr(text.find("    FREQ")));
   EXPECT_THAT(told("tables: [bare.tp7]"),
-              AllOf(HasSubstr("bare.tp7:1:5: error: the cards before this run do not tell its geometry"),
+              AllOf(HasSubstr("bare.tp7:1:5: error: the cards before this run do not state its geometry"),
                     HasSubstr("give observer_height_m, zenith_deg, and end_height_m or range_m")));
   const auto air = read(
       "tables: [{file: bare.tp7, observer_height_m: 4000, zenith_deg: 170, end_height_m: 20, solar_zenith_deg: 30, "

@@ -30,7 +30,8 @@ TEST(Sources, AirIsReadAsItIsWritten) {
       "atmosphere: {profile: tropical, water_kg_m2: 20, ozone_du: 250, ppm: {co2: 420}, gases: none, g_points: 8, "
       "shape: "
       "flat, scattering: single, streams: 8, scene_height_m: 1200, ground_albedo: 0.4, aerosol: {model: urban, "
-      "optical_depth_550: 0.3}, clouds: [{kind: water, base_m: 3000, top_m: 3500, optical_depth_550: 5, effective_radius_um: 8}]}");
+      "optical_depth_550: 0.3}, clouds: [{kind: water, base_m: 3000, top_m: 3500, optical_depth_550: 5, "
+      "effective_radius_um: 8}]}");
   ASSERT_TRUE(s.air);
   EXPECT_FALSE(s.atmosphere);
   EXPECT_NEAR(precipitable_water(s.air->profile), 20, 1e-6);
@@ -103,7 +104,8 @@ const BadCase kBad[] = {
     {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 900, optical_depth_550: 1}]}", "900"},
     {"atmosphere: {profile: tropical, aerosol: {model: rural, wind_m_s: 3}}", "wind_m_s"},
     {"atmosphere: {profile: tropical, aerosol: {model: desert, relative_humidity: 0.5}}", "relative_humidity"},
-    {"atmosphere: {profile: tropical, aerosol: {model: rural, optical_depth_550: 1, scale_height_m: 900, season: fall_winter}}",
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, optical_depth_550: 1, scale_height_m: 900, season: "
+     "fall_winter}}",
      "season"},
     {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 2000, optical_depth_550: 1, "
      "effective_radius_um: 50}]}",
