@@ -85,7 +85,7 @@ Budget budget_of(const RenderOptions& o) {
 }
 
 size_t kit_bytes_of(const RenderOptions& o) {
-  return o.kit_memory.empty() ? kDefaultKitBytes : bytes_of(o.kit_memory, "--kit-memory");
+  return o.kit_memory.empty() ? kDefaultKitBytes : bytes_of(o.kit_memory, "--cache-memory");
 }
 
 size_t view_bytes_of(const RenderOptions& o) { return bytes_of(o.view_size, "--view-size"); }

@@ -22,7 +22,7 @@ namespace {
 
 using dirsig::Fate;
 
-constexpr size_t kTold = 12;  // lines of what is lost that are printed
+constexpr size_t kMostPrinted = 12;  // lines of what is lost that are printed
 
 // The file that a prepared scene has in a folder; of scenes with one name the later ones get a number.
 std::string place_for(std::vector<std::string>& taken, const std::string& folder, const std::string& scene) {
@@ -89,20 +89,21 @@ double span_of_weather(const dirsig::WeatherAsked& asked) {
 }
 
 // Whether an import may go on: nothing was left out that must not be.
-bool tell(const dirsig::Ledger& ledger, bool strict) {
+bool report_import(const dirsig::Ledger& ledger, bool strict) {
   const auto counts = ledger.counts();
   const size_t lost = counts[static_cast<size_t>(Fate::unsupported)],
                ignored = counts[static_cast<size_t>(Fate::ignored)];
-  size_t told = 0;
+  size_t printed = 0;
   for (const dirsig::Entry& e : ledger.entries()) {
     if (e.fate != Fate::unsupported && !(strict && e.fate == Fate::ignored)) continue;
-    if (++told > kTold || e.part) continue;
+    if (++printed > kMostPrinted || e.part) continue;
     emit({Dr::import_unsupported, to_text(e.where) + ": " + to_text(e.fate) + ": " + e.path +
                                       (e.value.empty() ? "" : " = " + e.value) +
                                       (e.note.empty() ? "" : ": " + e.note)});
   }
-  if (told > kTold)
-    emit({Dr::import_more, strf("and %zu more (--account FILE.json, or --convert FOLDER)", told - kTold)});
+  if (printed > kMostPrinted)
+    emit({Dr::import_more,
+          strf("and %zu more (--import-report FILE.json, or --convert FOLDER)", printed - kMostPrinted)});
   note(
       strf("import: %zu elements and keys, %zu exact, %zu converted, %zu approximated, %zu ignored-harmless, %zu "
            "unsupported",
@@ -123,9 +124,9 @@ bool is_of_dirsig(const std::string& path) {
 void check_import_usage(const RenderOptions& o) {
   if (o.account.empty() && o.convert.empty() && o.search.empty() && !o.strict) return;
   if (!is_of_dirsig(o.simulation))
-    throw UsageError("--path, --account, --convert and --strict go with a simulation of DIRSIG (.sim, .jsim)");
+    throw UsageError("--path, --import-report, --convert and --strict go with a simulation of DIRSIG (.sim, .jsim)");
   if (!o.convert.empty() && (!o.account.empty() || !o.settings.empty()))
-    throw UsageError("--convert goes without --account and --set");
+    throw UsageError("--convert goes without --import-report and --set");
 }
 
 Simulation import_simulation(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
@@ -153,9 +154,9 @@ Simulation import_simulation(const RenderOptions& o, const SimulationCallbacks& 
     make_folders_of({o.account});
     write_file(o.account, ledger.json());
   }
-  if (!tell(ledger, o.strict))
+  if (!report_import(ledger, o.strict))
     throw Error(Where{o.simulation, 0, 0, {}, -1}, "a strict import leaves nothing out",
-                "--account FILE.json tells every line");
+                "--import-report FILE.json lists every line");
   const Params root = Params::parse_made(made.yaml, o.simulation, made.origins, o.settings);
   Simulation sim = read_simulation_tree(root, o.simulation, callbacks, o.settings);
   for (const std::string& file : ledger.files()) sim.files.push_back(file);
@@ -190,7 +191,7 @@ int convert_simulation(const RenderOptions& o) {
     note("scene-prep " + std::filesystem::path(place).replace_extension("yaml").string() + " -o " + place);
   note("wrote " + in_folder(o.convert, "simulation.yaml") +
        " and what became of every line, simulation_import.txt beside it");
-  return tell(ledger, o.strict) ? 0 : 1;
+  return report_import(ledger, o.strict) ? 0 : 1;
 }
 
 }  // namespace suite

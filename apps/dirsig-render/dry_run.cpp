@@ -16,7 +16,7 @@ namespace suite {
 namespace {
 
 // What the scene will take in memory.
-void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
+void print_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
   const Sensor& first = *sim.sensors.front();
   const TimeWindow window = first.tasks().front().captures.front().window;
   // Under a limit, however large, nothing is built before a ray comes.
@@ -41,7 +41,7 @@ void dry_run(const std::shared_ptr<const Scene>& scene, const Simulation& sim, c
   if (o.study.empty()) check_place(o, sim, pictures);
   check_captures(scene, sim, options);
   check_wishes(sim, Facts(sim, scene));
-  tell_forecast(scene, sim, options);
+  print_forecast(scene, sim, options);
   std::fputs(heat_forecast(scene, sim, options, o).c_str(), stdout);
   for (const auto& sensor : sim.sensors) {
     std::printf("sensor '%s'\n", sensor->name().c_str());

@@ -200,8 +200,8 @@ std::string what_is_left(const std::string& folder, size_t finished, size_t capt
 
 namespace {
 
-// Sensor and bands of what it could not be told where it is.
-std::string told_of(const Sensor& sensor) {
+// Sensor and bands, for faults without a place.
+std::string sensor_and_bands(const Sensor& sensor) {
   double low = INFINITY, high = -INFINITY;
   std::string bands;
   for (size_t state = 0; state < sensor.states().size(); ++state)
@@ -243,7 +243,7 @@ Error located(const Error& fault, const Scene& scene, const Simulation& sim, std
   if (!sensor) return placed(fault, Where{sim.path, 0, 0, {}, -1});
   const Sensor& of = *sim.sensors[*sensor];
   const bool named = fault.message().find("sensor '" + of.name() + "'") != std::string::npos;
-  return placed(fault, sim.sensor_where[*sensor], named ? "" : told_of(of));
+  return placed(fault, sim.sensor_where[*sensor], named ? "" : sensor_and_bands(of));
 }
 
 }  // namespace suite

@@ -22,7 +22,7 @@
 #include "heat_left_out.h"
 #include "heat_paths.h"
 #include "heat_prepared.h"
-#include "heat_told.h"
+#include "heat_report.h"
 #include "scheduler/prepass.h"
 
 namespace suite {
@@ -70,8 +70,8 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
     note(strf("heat: %u paths of a face have a standard error of %.2g K: %u for %g K", t.pilot_paths, t.pilot_error,
               t.paths, p.spec.target));
     if (!t.enough)
-      emit({Dr::heat_paths,
-            strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target)});
+      emit({Dr::heat_paths, strf("heat: %u paths of a face are the most, and too few for target_error_k %g", kMostPaths,
+                                 p.spec.target)});
     check_size(p, sim);
   }
   std::optional<LeftOut> left_out;
@@ -94,11 +94,11 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
   if (bar) bar->finish();
   if (left_out) note("heat: " + left_out->sentence(found.result));
   if (left_out && left_out->bound(found.result) > sim.heat->leave_out)
-    emit({Dr::heat_left_out, strf("heat: that is more than the %g K of leave_out_k", sim.heat->leave_out)});
+    emit({Dr::heat_left_out, strf("heat: that is more than the %g K of influence_cutoff_k", sim.heat->leave_out)});
   return found;
 }
 
-std::vector<std::string> tell(const HeatResult& h, const PreparedHeat& p, double seconds) {
+std::vector<std::string> report_sentences(const HeatResult& h, const PreparedHeat& p, double seconds) {
   const std::vector<std::string> sentences = heat_sentences(h, p, seconds);
   for (const std::string& sentence : sentences) note("heat: " + sentence);
   for (const std::string& sentence : h.notes) emit({Dr::heat_limit, "heat: " + sentence});
@@ -125,7 +125,7 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
   if (options.heat.empty()) {
     check_size(p, sim);
     Found found = find(p, scene, sim, options, folder);
-    const std::vector<std::string> sentences = tell(found.result, p, seconds_since(begun));
+    const std::vector<std::string> sentences = report_sentences(found.result, p, seconds_since(begun));
     if (!folder.empty()) keep(found.result, found.weather, p, scene, sim, sentences, folder);
     return std::move(found.result);
   }
@@ -137,7 +137,7 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
     emit({Dr::heat_other_span,
           strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",
                options.heat.c_str(), result.span.begin, result.span.end, p.spec.span.begin, p.spec.span.end)});
-  tell(result, p, seconds_since(begun));
+  report_sentences(result, p, seconds_since(begun));
   return result;
 }
 
@@ -176,9 +176,9 @@ struct FoundField final : ExplainedField {
   std::shared_ptr<const FoundPoints> points;
   HeatField field;
   FoundField(std::shared_ptr<const PreparedHeat> all, std::shared_ptr<const HeatResult> found,
-             std::shared_ptr<const FoundPoints> told)
+             std::shared_ptr<const FoundPoints> found_points)
       : prepared(std::move(all)),
-        points(std::move(told)),
+        points(std::move(found_points)),
         field(prepared->elements, std::move(found),
               points ? std::shared_ptr<const PointHeat>(points, &points->points) : nullptr) {}
   double kelvin(const HeatedPlace& place, double time) const override { return field.kelvin(place, time); }
@@ -229,7 +229,7 @@ bool asks_heat(const Scene& scene, const Simulation& sim, const RenderOptions& o
     throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
   if (!options.heat_operator.empty() && sim.heat->leave_out > 0)
     throw Error(sim.heat->where, "--heat-operator has the paths of all elements, and some are to be left out",
-                "drop 'leave_out_k' or --heat-operator");
+                "drop 'influence_cutoff_k' or --heat-operator");
   return true;
 }
 
@@ -289,7 +289,7 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
   }
 }
 
-void tell_of_points(const Heating& heating) {
+void report_points(const Heating& heating) {
   const auto* found = dynamic_cast<const FoundField*>(heating.field.get());
   if (!found || !found->points) return;
   const PointHeat& points = found->points->points;
@@ -366,7 +366,8 @@ std::string forecast(const std::shared_ptr<const Scene>& scene, const Simulation
                      later + 1, 100 * seeing)
               : std::string{}) +
          (p.spec.target > 0
-              ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
+              ? strf("heat: that is with %u paths of a face; target_error_k asks a pilot for their number\n",
+                     p.spec.paths)
               : std::string{});
 }
 

@@ -24,7 +24,7 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
                    const RenderOptions& options, const std::string& folder, Ranks* ranks);
 
 // Tells what the temperatures at points took (`final_gather`).
-void tell_of_points(const Heating& heating);
+void report_points(const Heating& heating);
 
 // --dry-run: elements, rays, memory; empty where no temperatures are to be found. Error: as heating_of().
 std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& simulation,

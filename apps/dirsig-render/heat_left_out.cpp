@@ -74,7 +74,7 @@ void check_kept(const Elements& all, const Simulation& sim, const std::vector<ui
   for (size_t e = 0; e < seen.size(); ++e) lacking += seen[e] && !there[e];
   if (lacking > 0)
     throw Error(strf("%zu elements that the sensors may see were left out when the temperatures were found", lacking),
-                "find them with these sensors too, or all ('leave_out_k: 0')");
+                "find them with these sensors too, or all ('influence_cutoff_k: 0')");
 }
 
 void keep_elements(PreparedHeat& p, const std::vector<uint32_t>& numbers) {

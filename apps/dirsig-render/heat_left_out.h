@@ -1,11 +1,12 @@
-// Elements that do not matter to what the sensors see: left out of the search for temperatures (`heat: {leave_out_k}`).
+// Elements that do not matter to what the sensors see: left out of the search for temperatures (`heat:
+// {influence_cutoff_k}`).
 #pragma once
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "heat/influence.h"
-#include "heat_told.h"
+#include "heat_report.h"
 
 namespace suite {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "heat_told.h"
+#include "heat_report.h"
 #include "options.h"
 
 namespace suite {

@@ -79,13 +79,13 @@ std::vector<RestInterval> rests_of(const Tracer& tracer, const Simulation& sim) 
   if (spec.intervals == 1) return {};
   std::vector<RestInterval> rests = rest_intervals(tracer, spec.step);
   if (rests.size() <= spec.intervals) return rests;
-  throw Error(
-      sim.heat->where,
-      strf("what moves, comes or goes rests in %zu intervals of the span, and %zu are the most", rests.size(),
-           spec.intervals),
-      strf("'intervals: %zu' (rays and memory grow with it), a longer step_s, or 'intervals: 1': what moves then "
-           "leaves the exchange, and what comes and goes is in it for its share of the span",
-           rests.size()));
+  throw Error(sim.heat->where,
+              strf("what moves, comes or goes rests in %zu intervals of the span, and %zu are the most", rests.size(),
+                   spec.intervals),
+              strf("'geometry_intervals: %zu' (rays and memory grow with it), a longer step_s, or 'geometry_intervals: "
+                   "1': what moves then "
+                   "leaves the exchange, and what comes and goes is in it for its share of the span",
+                   rests.size()));
 }
 
 // Places of other times would be those of other elements.
@@ -169,11 +169,11 @@ double bytes_of(const PreparedHeat& p) {
   const double later_tracing = more * (paths * 8 + 2 * moments + 2 * kSkyPatches +
                                        HeatSpec::kBlocks * (2 * kHeatParts + 8 + 2 * kSkyShapes + 8 + 4)),
                later_balance = more > 0 ? paths * 8 * 4 + more * paths * 8 * 3 : 0;
-  const double told = 4 * moments * 4 + 4.0 * 3 * kHeatParts;  // as the result has it, in place of the paths
+  const double reported = 4 * moments * 4 + 4.0 * 3 * kHeatParts;  // as the result has it, in place of the paths
   return static_cast<double>(p.faces->size()) *
          std::max({paths * 8 + std::max({tracing + later_tracing, making, balance + lateral + later_balance,
                                          errors + lateral + later_balance}),
-                   told});
+                   reported});
 }
 
 void check_size(const PreparedHeat& p, const Simulation& sim) {

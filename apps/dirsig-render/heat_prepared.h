@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "formats/heat_hdf/heat_hdf.h"
-#include "heat_told.h"
+#include "heat_report.h"
 
 namespace suite {
 

@@ -47,7 +47,7 @@ void LocatedPixels::add_control(const std::string& file, FloatRaster& raster) co
   if (!raster.placement) add_ground_control(file, *places_, sight_->lines(), raster);
 }
 
-std::vector<std::string> LocatedPixels::write_rasters(const std::string& base, const FloatRaster& told,
+std::vector<std::string> LocatedPixels::write_rasters(const std::string& base, const FloatRaster& described,
                                                       std::span<const float> values,
                                                       std::span<const float> quality) const {
   using enum MappedImage::Kind;
@@ -67,8 +67,8 @@ std::vector<std::string> LocatedPixels::write_rasters(const std::string& base, c
       std::copy_n(numbers.begin() + static_cast<long>(row * row_values), row_values, to.begin());
     });
   };
-  on_map({means, "_map.tif", told, {values.begin(), values.end()}, told.no_data});
-  FloatRaster error = told;
+  on_map({means, "_map.tif", described, {values.begin(), values.end()}, described.no_data});
+  FloatRaster error = described;
   error.display.clear(), error.true_colour = false, error.no_data = std::nan("");
   std::vector<double> numbers = EnviImage(base + "_error.img").read_all();
   raw("_error.tif", error, numbers);

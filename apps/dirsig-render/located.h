@@ -26,7 +26,7 @@ class LocatedPixels {
   void add_control(const std::string& file, FloatRaster& raster) const;
   // Standard errors and truth (of BASE_error.img and BASE_truth.img) as raw rasters, and all of them and the flags on
   // the map. told: the raster of the values. Returns the names of the files.
-  std::vector<std::string> write_rasters(const std::string& base, const FloatRaster& told,
+  std::vector<std::string> write_rasters(const std::string& base, const FloatRaster& described,
                                          std::span<const float> values, std::span<const float> quality) const;
   bool mapped() const { return mapped_; }
 

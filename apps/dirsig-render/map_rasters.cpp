@@ -114,12 +114,12 @@ void add_ground_control(const std::string& file, const GroundPlaces& places, con
                         FloatRaster& raster) {
   const auto fit = rpc_of(lines, places);
   if (fit && fit->rms <= kWorstRpc) {
-    const std::string told = strf("%.2g pixels rms, %.2g at most", fit->rms, fit->largest);
-    note("'" + file + "': RPCs (RPC00B) follow the places of its pixels within " + told);
+    const std::string residual = strf("%.2g pixels rms, %.2g at most", fit->rms, fit->largest);
+    note("'" + file + "': RPCs (RPC00B) follow the places of its pixels within " + residual);
     std::vector<Vec2> east_north;
     for (size_t i = 0; i < places.size(); ++i) east_north.push_back({places.enu(i).x, places.enu(i).y});
     raster.rpc = in_tag_order(fit->rpc, fit->rms * spacing_of(east_north, places.columns()).pixel());
-    raster.remarks.push_back({"rpc_residual", told});
+    raster.remarks.push_back({"rpc_residual", residual});
     return;
   }
   raster.control = control_points(places);

@@ -95,7 +95,7 @@ void declare_import(Cli& cli, RenderOptions& o) {
   cli.option("--path", o.search,
              "of a simulation of DIRSIG: folder in which named files are also looked for (repeatable)", "DIR");
   cli.option(
-      "--account", o.account,
+      "--import-report", o.account,
       "of a simulation of DIRSIG: write what became of every element and key of its files, with its line, as JSON",
       "FILE.json");
   cli.option("--convert", o.convert,
@@ -155,7 +155,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
              "'standard', or 'paper': the estimator of the DIRSIG5 paper as written, with its rule of stopping, for "
              "comparison",
              "standard|paper");
-  cli.option("--kit-memory", o.kit_memory,
+  cli.option("--cache-memory", o.kit_memory,
              "room for materials and lights that are kept for later captures (KiB, MiB, GiB; 1GiB unless given); with "
              "less they are made anew, results stay the same",
              "512MiB");

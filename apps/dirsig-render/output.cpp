@@ -200,7 +200,7 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
 }
 
 // When the rows were taken and where the sun stood, in the headers of all files; known once the last row is there.
-void OutputWriter::tell_moment(Image& m) const {
+void OutputWriter::add_acquisition_time(Image& m) const {
   const double begin = m.window->begin, end = m.window->end, middle = 0.5 * (begin + end);
   const bool lasts = end > begin;
   const std::string utc = facts_.utc(middle);
@@ -313,7 +313,7 @@ void OutputWriter::append(Image& m, const Delivery& d) const {
 }
 
 void OutputWriter::finish(Image& m, const std::string& base, std::span<const Band> bands) {
-  tell_moment(m);
+  add_acquisition_time(m);
   for (EnviWriter* w : m.writers()) w->commit();
   if (m.located) {
     const std::string about = m.who + m.description + "; " + notes_.engine;

@@ -32,7 +32,7 @@ class OutputWriter {
   void open_truth(Image& image, const Delivery& delivery, const std::string& base, const EnviHeader& header,
                   const std::string& about) const;
   void append(Image& image, const Delivery& delivery) const;
-  void tell_moment(Image& image) const;
+  void add_acquisition_time(Image& image) const;
   void write_whole(Image& image, const std::string& base) const;
   void finish(Image& image, const std::string& base, std::span<const Band> bands);
   std::string folder_;

@@ -71,7 +71,7 @@ void refuse_time(const std::shared_ptr<const Scene>& scene, const Simulation& si
       (range ? strf("%u,%u", least, worth) : strf("%u", worth)) + " at the speed of this machine");
 }
 
-void tell_share(const JobReport& r, const Share& share, const std::string& folder) {
+void report_share(const JobReport& r, const Share& share, const std::string& folder) {
   const auto captures = [](size_t n) { return strf("%zu capture%s", n, n == 1 ? "" : "s"); };
   if (!share.runs())
     return note(
@@ -85,7 +85,7 @@ void tell_share(const JobReport& r, const Share& share, const std::string& folde
   note(r.pilots_waiting
            ? "the plan for the targets of " + captures(r.pilots_waiting) +
                  " follows from the pilots of all parts: when all have come so far, --merge joins them and "
-                 "tells the second round"
+                 "states the second round"
            : "when all parts have, --merge joins them");
 }
 

@@ -22,6 +22,6 @@ std::optional<Share> share_of(const RenderOptions& o);
                               const JobOptions& options);
 
 // What a part has run and what comes next; or what joined parts still wait for.
-void tell_share(const JobReport& report, const Share& share, const std::string& folder);
+void report_share(const JobReport& report, const Share& share, const std::string& folder);
 
 }  // namespace suite

@@ -37,13 +37,13 @@ Conversion::Conversion(const Delivery& d, Quantity quantity, OutputSpec::Units u
   for (const ColumnBands& c : columns) {
     Part part{c.columns, {}, {}, {}};
     for (const Band& b : c.bands) {
-      part.doubt.push_back(0);
+      part.relative_error.push_back(0);
       if (quantity == Quantity::brightness_temperature) {
         part.thermometers.emplace_back(b);
       } else if (quantity == Quantity::remote_sensing_reflectance) {
         const LightAbove::Irradiance down = facts.light_above().of(d, b);
         part.factor.push_back(1 / down.mean);
-        part.doubt.back() = down.error / down.mean;
+        part.relative_error.back() = down.error / down.mean;
       } else {
         part.factor.push_back(sun ? kPi / (band_mean(b, sun->irradiance) * normalized(sun->direction).z)
                                   : unit_factor(units, b));
@@ -62,7 +62,7 @@ void Conversion::apply(std::span<double> values, std::span<double> errors) const
         const size_t band = v % per_pixel_ % bands_;
         if (part.thermometers.empty()) {
           values[at] *= part.factor[band];
-          errors[at] = std::hypot(errors[at] * part.factor[band], values[at] * part.doubt[band]);
+          errors[at] = std::hypot(errors[at] * part.factor[band], values[at] * part.relative_error[band]);
           continue;
         }
         const BandThermometer::Reading t = part.thermometers[band].read(values[at]);

@@ -32,7 +32,7 @@ class Conversion {
   struct Part {
     size_t columns = 0;
     std::vector<double> factor;                 // of each band
-    std::vector<double> doubt;                  // its relative standard error
+    std::vector<double> relative_error;         // its relative standard error
     std::vector<BandThermometer> thermometers;  // of each band, or none
   };
   size_t per_pixel_ = 0, bands_ = 0, columns_ = 0;

@@ -52,7 +52,7 @@ std::vector<int> ranks_of(const Cli& cli, const RenderOptions& o) {
   for (const char* option : {"--part", "--merge", "--plan", "--study", "--resume", "--more"})
     if (cli.given(option))
       throw UsageError(std::string("--ranks forecasts a whole job from its beginning: leave out ") + option);
-  if (!o.time.empty()) throw UsageError("--ranks tells the time that paths take: leave out --time, give --paths");
+  if (!o.time.empty()) throw UsageError("--ranks forecasts the time that paths take: leave out --time, give --paths");
   if (o.stop == "change" || o.method == "paper")
     throw UsageError("--stop change and --method paper are for one process: leave out --ranks");
   return numbers_of(o.ranks, 1, 65536, "--ranks wants whole numbers from 1 to 65536, N or N,N,...");

@@ -3,20 +3,21 @@
 #include <cmath>
 
 #include "air_lut.h"
-#include "air_told.h"
+#include "air_report.h"
 #include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/interrupt.h"
 #include "base/outputs.h"
 #include "base/progress.h"
+#include "base/renamed.h"
 #include "budget_options.h"
 #include "continued.h"
-#include "deck_told.h"
+#include "deck_report.h"
 #include "dirsig_import.h"
 #include "dry_checks.h"
 #include "dry_run.h"
-#include "flags_told.h"
+#include "flags_report.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
@@ -53,6 +54,11 @@ namespace {
 int print(const std::string& list) {
   std::fputs(list.c_str(), stdout);
   return 0;
+}
+
+// Old names of keys and options that were met since the last call.
+void report_renamed() {
+  for (const RenamedUse& use : take_renamed_uses()) emit({Dr::renamed, text_of(use)});
 }
 
 // The row of a diagnostic, by its code.
@@ -99,13 +105,13 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
   }
 }
 
-void tell(const JobReport& r, const Scene& scene) {
+void report_job(const JobReport& r, const Scene& scene) {
   const double paths = static_cast<double>(r.statistics.paths);
   note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer",
             human_count(paths).c_str(), human_count(static_cast<double>(r.statistics.trace.rays)).c_str(),
             paths > 0 ? static_cast<double>(r.statistics.nodes) / paths : 0, 100 * r.share_in_embree));
   note(strf("median relative standard error %.2f %%", 100 * r.median_relative_error));
-  tell_quality(r.quality);
+  report_quality(r.quality);
   note(r.stopped_by);
   if (const TileUse& t = r.tiles; t.built)
     note(
@@ -122,10 +128,10 @@ void tell(const JobReport& r, const Scene& scene) {
     for (const Diagnostic& d : diagnose_shortfall(s.sensor, s.shortfall)) emit(d);
 }
 
-void tell(const JobReport& r, const Scene& scene, const JobOptions& options, const std::string& folder) {
-  tell_of_points(options.heating);
-  if (options.share && (options.share->runs() || r.captures_waiting)) return tell_share(r, *options.share, folder);
-  tell(r, scene);
+void report_job(const JobReport& r, const Scene& scene, const JobOptions& options, const std::string& folder) {
+  report_points(options.heating);
+  if (options.share && (options.share->runs() || r.captures_waiting)) return report_share(r, *options.share, folder);
+  report_job(r, scene);
 }
 
 // Runs the job so that a signal ends it in good order and a result that cannot be written tells what there is.
@@ -158,7 +164,7 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
 // What is told and written of a whole run.
 void conclude(const JobReport& report, const JobOptions& options, const std::string& folder, const Simulation& sim,
               const LoadedScene& loaded, OutputWriter& writer) {
-  tell(report, *loaded.scene, options, folder);
+  report_job(report, *loaded.scene, options, folder);
   for (const auto& reads : loaded.later) note(reads->text());
   write_log(in_folder(folder, "render.json"), report, options);
   if (!report.captures_waiting) write_sensor_logs(sim, writer);
@@ -201,7 +207,7 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
       for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
   note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors, options.pipeline)));
   look_through_tables(sim.sources, scene, sim.sensors);
-  for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
+  for (const std::string& sentence : describe_sources(sim.sources, scene, sim.sensors)) note(sentence);
   for (const Diagnostic& d : diagnose_air(sim.sources, scene, sim.sensors, options)) emit(d);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (size_t s = 0; s < sim.sensors.size(); ++s) {
@@ -235,7 +241,7 @@ std::unique_ptr<StateStore> join_or_open(const RenderOptions& o, const Simulatio
   if (!ranks || ranks->leads()) store = open_store(o, o.output, sim, options);
   options.store = store.get();
   if (!ranks) return store;
-  tell_budget(*ranks, options.budget);
+  broadcast_budget(*ranks, options.budget);
   options.executor = &ranks->executor();
   return store;
 }
@@ -262,6 +268,7 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
 Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
   Simulation sim = is_of_dirsig(o.simulation) ? import_simulation(o, callbacks, alone)
                                               : read_simulation(o.simulation, callbacks, o.settings);
+  report_renamed();
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   if (sim.heat) sim.heat->spec.seed = sim.pipeline.seed;
@@ -294,6 +301,7 @@ void find_beforehand(const std::shared_ptr<const Scene>& scene, const Simulation
 void mute_and_load(const RenderOptions& o) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
   for (const std::string& code : o.mute) mute(diagnostic_code(code));
+  report_renamed();
 }
 
 }  // namespace

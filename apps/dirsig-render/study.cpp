@@ -136,7 +136,7 @@ StudyImage reference_for(const RenderOptions& o, const std::shared_ptr<const Sce
   return std::move(run.image);
 }
 
-void tell(const StudySummary& s) {
+void report_summary(const StudySummary& s) {
   for (const StudySeries& series : s.series) {
     const StudyPoint& last = series.points.back();
     std::printf(
@@ -201,7 +201,7 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
                                                          "budget; its own error is part of every test.",
                                                          StudyPlan::kReferenceFactor)
                                                   : "Reference: " + o.reference + ", taken as exact."})));
-  tell(summary);
+  report_summary(summary);
   note("wrote " + in_folder(o.study, "study.csv, study.json, study.html"));
   return 0;
 }

@@ -103,11 +103,11 @@ std::shared_ptr<SpillFile> spill_file(Ranks& ranks) {
   return mine;
 }
 
-void tell_budget(Ranks& ranks, Budget& budget) {
+void broadcast_budget(Ranks& ranks, Budget& budget) {
   static_assert(std::is_trivially_copyable_v<Budget>);
   const auto own = std::as_bytes(std::span<const Budget>(&budget, 1));
   std::vector<std::byte> bytes(own.begin(), own.end());
-  ranks.executor().tell(bytes);
+  ranks.executor().broadcast(bytes);
   std::memcpy(&budget, bytes.data(), sizeof(Budget));
 }
 

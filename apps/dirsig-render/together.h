@@ -36,6 +36,6 @@ void check_alike(Ranks& ranks, const StateIdentity& identity);
 // A file that all ranks of this machine have open, for what they unpack; null where they cannot share one.
 std::shared_ptr<SpillFile> spill_file(Ranks& ranks);
 // The budget that rank 0 has, which may be that of a state.
-void tell_budget(Ranks& ranks, Budget& budget);
+void broadcast_budget(Ranks& ranks, Budget& budget);
 
 }  // namespace suite

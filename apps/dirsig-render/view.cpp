@@ -338,7 +338,7 @@ void check_view_usage(const Cli& cli, const RenderOptions& o) {
   if (o.simulation.empty())
     refuse("without a simulation shows what is in the folder of -o",
            {"--set", "--paths", "--target-error", "--time", "--seed", "--state", "--resume", "--more", "--merge",
-            "--plan", "--heat", "--account", "--strict", "--plugin"});
+            "--plan", "--heat", "--import-report", "--strict", "--plugin"});
 }
 
 }  // namespace

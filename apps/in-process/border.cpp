@@ -21,7 +21,7 @@ std::string& message() {
   return text;
 }
 
-std::string& told_text() {
+std::string& messages() {
   thread_local std::string text;
   return text;
 }
@@ -53,12 +53,12 @@ int at_border(const std::function<void()>& work) {
   }
 }
 
-int at_border(const std::function<void(std::vector<std::string>& told)>& work) {
+int at_border(const std::function<void(std::vector<std::string>& sentences)>& work) {
   return at_border([&]() {
-    told_text().clear();
-    std::vector<std::string> told;
-    work(told);
-    for (const std::string& sentence : told) told_text() += (told_text().empty() ? "" : "\n") + sentence;
+    messages().clear();
+    std::vector<std::string> sentences;
+    work(sentences);
+    for (const std::string& sentence : sentences) messages() += (messages().empty() ? "" : "\n") + sentence;
   });
 }
 
@@ -96,7 +96,7 @@ void in_parallel(size_t n, const std::function<void(size_t, size_t)>& body) {
 int rs_interface(void) { return RS_INTERFACE; }
 const char* rs_version(void) { return suite::kVersion; }
 const char* rs_message(void) { return suite::message().c_str(); }
-const char* rs_told(void) { return suite::told_text().c_str(); }
+const char* rs_told(void) { return suite::messages().c_str(); }
 
 int rs_set_threads(int threads) {
   return suite::at_border([&] {

@@ -18,7 +18,7 @@ namespace suite {
 int at_border(const std::function<void()>& work);
 
 // The same, of calls that may warn: what `work` adds is rs_told() of the thread afterwards, one sentence a line.
-int at_border(const std::function<void(std::vector<std::string>& told)>& work);
+int at_border(const std::function<void(std::vector<std::string>& sentences)>& work);
 
 // What callers hold of an object: a number that is never given twice, in place of an address. So an object that has
 // been closed is known to be, and it lives until the calls that are using it have ended, in whichever threads.

@@ -7,7 +7,9 @@
 #include "apps/in-process/border.h"
 #include "apps/in-process/rays.h"
 #include "apps/in-process/remote_scenes.h"
+#include "base/diagnostics.h"
 #include "base/error.h"
+#include "base/renamed.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
@@ -21,7 +23,7 @@ namespace suite {
 
 namespace {
 
-using Told = std::vector<std::string>;
+using Messages = std::vector<std::string>;
 
 Simulation simulation_of(const char* path) {
   need(path, "path");
@@ -70,9 +72,10 @@ Heating heating_of(const Simulation& sim, const Scene& scene, const SpectralStat
 }  // namespace suite
 
 struct rs_simulation {
-  rs_simulation(const char* path, const char* name, suite::Told& told)
+  rs_simulation(const char* path, const char* name, suite::Messages& messages)
       : sim(suite::simulation_of(path)), sensor(suite::sensor_of(sim, name)), scene(suite::scenes_of(sim)) {
     using namespace suite;
+    for (const RenamedUse& use : take_renamed_uses()) messages.push_back(line_of({Dr::renamed, text_of(use)}));
     const Where where{sim.path, 0, 0, {}, -1};
     if (sensor.states().size() != 1 || sensor.tasks().empty())
       throw Error(where, strf("sensor '%s' has %zu spectral states", sensor.name().c_str(), sensor.states().size()),
@@ -81,7 +84,7 @@ struct rs_simulation {
     add_biases(reports, biases);
     for (const BinReport& r : reports)
       if (!r.met())
-        told.push_back("bands are less exact than asked for: " + (r.missed.empty() ? r.text() : r.missed_text()));
+        messages.push_back("bands are less exact than asked for: " + (r.missed.empty() ? r.text() : r.missed_text()));
     heating = heating_of(sim, *scene, sensor.states()[0]);
   }
   const suite::Capture& first() const { return sensor.tasks()[0].captures.at(0); }
@@ -103,7 +106,7 @@ Handles<rs_simulation>& simulations() {
 }
 
 void render(const rs_simulation& s, const RayRequests& rays, uint32_t paths, uint64_t seed, const RayAnswers& answers,
-            Told& told) {
+            Messages& messages) {
   const auto bands = s.sensor.bands(0);
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<RaySensor>(
@@ -112,7 +115,7 @@ void render(const rs_simulation& s, const RayRequests& rays, uint32_t paths, uin
     check_motion(*s.scene, c.window.begin, c.window.end, Where{s.sim.path, 0, 0, {}, -1});
   SourceSpecs sources = s.sim.sources;
   look_through_tables(sources, *s.scene, sensors);
-  tell_sources(sources, *s.scene, sensors);  // refuses skies without a sun
+  describe_sources(sources, *s.scene, sensors);  // refuses skies without a sun
   JobOptions options;
   options.pipeline = s.sim.pipeline;
   options.pipeline.seed = seed;
@@ -121,7 +124,7 @@ void render(const rs_simulation& s, const RayRequests& rays, uint32_t paths, uin
   options.biases = s.biases;
   options.progress = false;
   if (paths) options.budget.min_paths = options.budget.max_paths = paths, options.budget.relative_error = 0;
-  const auto keep = [&](const Diagnostic& d) { told.push_back(line_of(d)); };
+  const auto keep = [&](const Diagnostic& d) { messages.push_back(line_of(d)); };
   options.diagnose = keep;
   const JobReport report = run_job(s.scene, sources, sensors, options);
   for (const JobReport::SensorShortfall& lacks : report.shortfalls)
@@ -136,9 +139,9 @@ using suite::at_border;
 using suite::need;
 
 int rs_simulation_open(const char* path, const char* sensor, rs_simulation** simulation) {
-  return at_border([&](suite::Told& told) {
+  return at_border([&](suite::Messages& messages) {
     need(simulation, "simulation");
-    *simulation = suite::simulations().add(std::make_shared<const rs_simulation>(path, sensor, told));
+    *simulation = suite::simulations().add(std::make_shared<const rs_simulation>(path, sensor, messages));
   });
 }
 
@@ -165,7 +168,7 @@ const char* rs_simulation_band(const rs_simulation* handle, size_t number, doubl
 int rs_simulation_radiance(const rs_simulation* handle, size_t n, const double* origin, const double* direction,
                            const double* time, uint32_t paths, uint64_t seed, double* radiance, double* standard_error,
                            uint8_t* quality) {
-  return at_border([&](suite::Told& told) {
+  return at_border([&](suite::Messages& messages) {
     const auto simulation = suite::simulations().get(handle, "simulation");
     if (seed > (uint64_t{1} << 53)) throw suite::Error("a seed above 2^53");
     if (paths > (1u << 30)) throw suite::Error(suite::strf("%u paths", paths), "up to 2^30");
@@ -180,6 +183,6 @@ int rs_simulation_radiance(const rs_simulation* handle, size_t n, const double* 
     if (time) suite::need_finite(time, n, 1, "time");
     suite::RayRequests rays{n, origin, direction, std::vector<double>(n, simulation->first().window.begin)};
     if (time) rays.time.assign(time, time + n);
-    suite::render(*simulation, rays, paths, seed, {radiance, standard_error, quality}, told);
+    suite::render(*simulation, rays, paths, seed, {radiance, standard_error, quality}, messages);
   });
 }

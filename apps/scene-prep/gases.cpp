@@ -70,8 +70,8 @@ LineGas gas_of_source(const GasRecipe::Source& source, const LineBake& bake, std
   return gas;
 }
 
-// What a gas brings to the range of the table, and what is doubtful about it.
-void tell(const GasRecipe::Source& source, const LineGas& gas, const LineBake& bake) {
+// What a gas brings to the range of the table, and what is uncertain about it.
+void print_source(const GasRecipe::Source& source, const LineGas& gas, const LineBake& bake) {
   const double low = bake.edges_cm.front() - kReach, high = bake.edges_cm.back() + kReach;
   const std::string name(gas_name(gas.gas));
   size_t within = 0;
@@ -108,7 +108,7 @@ int bake_gases(const ScenePrepOptions& o) {
   std::vector<LineGas> gases;
   for (const GasRecipe::Source& source : recipe.gases) {
     gases.push_back(gas_of_source(source, bake, lines_of(source, lists)));
-    tell(source, gases.back(), bake);
+    print_source(source, gases.back(), bake);
   }
   lists.clear();
   std::optional<WaterContinuum> continuum;

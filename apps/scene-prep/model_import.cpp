@@ -54,7 +54,7 @@ std::string uplifted_text(const LinearRgb& rgb) {
 
 struct Made {
   std::string yaml;
-  std::string told, origin;  // what is assumed; where on the Earth it is
+  std::string placed_by, origin;  // what is assumed; where on the Earth it is
   std::vector<SourceMaterial> materials;
   bool colours = false;  // the format has display colours at all
 };
@@ -90,15 +90,15 @@ std::string place_city(const std::string& path, Made& made) {
   const auto epsg = epsg_of_name(city.system);
   const auto system = epsg ? map_system_of_epsg(*epsg) : std::nullopt;
   if (!system) {
-    made.told = "its reference system '" + printable(city.system) +
-                "' is not known here: its map is taken as flat, with no place on the Earth";
+    made.placed_by = "its reference system '" + printable(city.system) +
+                     "' is not known here: its map is taken as flat, with no place on the Earth";
     return strf(", local: [%.3f, %.3f, %.3f]", at.x, at.y, at.z);
   }
   Geodetic g{at.x, at.y, at.z};
   if (system->zone) g = geodetic_from_utm({*system->zone, at.x, at.y, at.z});
   check_geodetic(g);
   if (system->heights != MapSystem::Heights::ellipsoid)
-    made.told =
+    made.placed_by =
         "heights are taken as above the ellipsoid; above the geoid with --set origin.geoid=FILE.pgm --set "
         "origin.height=geoid --set objects.NAME.height=geoid";
   made.origin = strf("origin: {latitude_deg: %.9f, longitude_deg: %.9f, height_m: %.3f}\n", g.latitude_deg,
@@ -145,7 +145,7 @@ Draft read(const std::string& path, const ImportOptions& options, Report& report
   std::string head(std::min<size_t>(file_size(path), 4096), '\0');
   RandomAccessFile(path).read_at(0, std::as_writable_bytes(std::span(head)));
   const Made made = text_of(path, file, kind_of(path, head), options);
-  if (!made.told.empty()) report.add("SP707", path, {Where{path, 0, 0, {}, -1}, made.told});
+  if (!made.placed_by.empty()) report.add("SP707", path, {Where{path, 0, 0, {}, -1}, made.placed_by});
   if (options.uplift && !made.colours) warn("--uplift: " + file + " has no materials with display colours");
   for (const SourceMaterial& m : made.materials) {
     const std::string setting = "materials." + m.name;

@@ -63,7 +63,7 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.option("--report", o.report,
              "write the findings as JSON (- = standard output); what each step took is plotted beside it in FILE.html",
              "FILE.json");
-  cli.option("--account", o.account,
+  cli.option("--import-report", o.account,
              "of a scene of DIRSIG: write what became of every element and key of its files, with its line, as JSON",
              "FILE.json");
   cli.option("--convert", o.convert,
@@ -76,7 +76,7 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.flag("--strict", o.strict,
            "warnings refuse the scene too; of a scene of DIRSIG whatever is left out, however harmless");
   cli.flag("--repair", o.repair,
-           "weld positions, drop triangles without area and duplicates, make the winding consistent; each is told");
+           "weld positions, drop triangles without area and duplicates, make the winding consistent; each is reported");
   cli.option(
       "--compress", o.compress,
       "pack the prepared scene, which then loads more slowly: none (as without), deflate[:1-9] (6), or one of these "

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +14,7 @@
 #include "base/outputs.h"
 #include "base/params.h"
 #include "base/progress.h"
+#include "base/renamed.h"
 #include "base/report.h"
 #include "formats/obj/obj.h"
 #include "formats/picture/picture.h"
@@ -148,6 +150,7 @@ int prepare(const ScenePrepOptions& o) {
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
   Draft draft = importer_of(o.input).make(o.input, {o.search, o.settings, o.account, o.strict, o.uplift}, report);
+  for (const RenamedUse& use : take_renamed_uses()) report.add("SP004", o.input, {use.where, text_of(use)});
   check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
@@ -287,7 +290,7 @@ bool is_prepared(const std::string& path) {
 
 int convert(const ScenePrepOptions& o) {
   if (!o.output.empty() || !o.report.empty() || !o.account.empty() || !o.settings.empty())
-    throw UsageError("--convert goes without --output, --report, --account and --set");
+    throw UsageError("--convert goes without --output, --report, --import-report and --set");
   note_input(o.input);
   const ImporterRow& importer = importer_of(o.input);
   if (!importer.convert)
@@ -300,6 +303,8 @@ int convert(const ScenePrepOptions& o) {
 }  // namespace
 
 int run_scene_prep(const ScenePrepOptions& o) {
+  for (const RenamedUse& use : take_renamed_uses())  // options: keys are not read yet
+    if (std::ranges::find(o.mute, "SP004") == o.mute.end()) warn(text_of(use) + " [SP004]");
   if (o.list_issues) return list_issues(), 0;
   if (const std::string list = lists(o); !list.empty()) return std::fputs(list.c_str(), stdout), 0;
   if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;

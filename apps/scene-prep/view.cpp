@@ -233,14 +233,14 @@ void write_scene_view(const Scene& scene, const std::vector<ViewedFinding>& find
     lacks.moved = std::max(lacks.moved, s.moved);
     things.push(put_sketch(page, strf("m%c%u.", mesh ? 'm' : 'p', target.second), name, s, placed));
   }
-  Json ids = Json::array(), told = Json::array();
+  Json ids = Json::array(), notes = Json::array();
   for (const auto& entry : in.of)
     ids.push(strf("m%c%u.", entry.first.first == TargetKind::mesh ? 'm' : 'p', entry.first.second));
-  for (const std::string& sentence : lacks.text(scene, in)) told.push(sentence), note(path + ": " + sentence);
+  for (const std::string& sentence : lacks.text(scene, in)) notes.push(sentence), note(path + ": " + sentence);
   Json end = Json::object();
   end.set("ids", std::move(ids));
   end.set("things", std::move(things));
-  end.set("told", std::move(told));
+  end.set("notes", std::move(notes));
   end.set("findings", list_of(findings));
   page.json("end", end);
   page.begin();

@@ -145,7 +145,7 @@ Row fitted_row(const SqtFitOptions& o, const std::string& name, size_t bytes, co
           ""};
 }
 
-std::vector<std::string> told(const SqtFitOptions& o) {
+std::vector<std::string> table_head(const SqtFitOptions& o) {
   return {
       "settings: " + settings_of(o), command_line(),
       "rmse: root mean square of fit - data, 1/sr, over uniform directions of the hemisphere (the paper's Figure 8, "
@@ -156,7 +156,7 @@ std::vector<std::string> told(const SqtFitOptions& o) {
 
 std::string csv_of(const SqtFitOptions& o, const std::vector<Row>& rows) {
   std::string csv = std::string(kMagic) + '\n';
-  for (const std::string& t : told(o)) csv += "# " + t + '\n';
+  for (const std::string& t : table_head(o)) csv += "# " + t + '\n';
   auto add = [&csv](const Row& row) {
     for (size_t c = 0; c < row.size(); ++c) csv += (c ? "," : "") + quoted(row[c]);
     csv += '\n';
@@ -168,7 +168,7 @@ std::string csv_of(const SqtFitOptions& o, const std::vector<Row>& rows) {
 
 // Errors of the materials in ascending order, and against the size.
 Page page_of(const SqtFitOptions& o, const std::vector<Row>& rows) {
-  Page page{"Measured files as quad-trees", told(o), {}, {}};
+  Page page{"Measured files as quad-trees", table_head(o), {}, {}};
   auto number = [](const Row& row, const char* name) { return std::strtod(row[column(name)].c_str(), nullptr); };
   Plot ranked{"Errors, in ascending order", "file (rank)", "rmse [1/sr], l1 and cos_rmse [relative]", false, true, {}};
   Plot sized{"Error against size", "bytes of the .sqt", "l1 [relative]", true, true, {}};

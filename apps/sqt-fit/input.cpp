@@ -17,7 +17,7 @@ namespace {
 
 // Says how far from the normal the samples reach where they leave much of the hemisphere to the outermost ones: beyond
 // 75 degrees lie 7 % of the projected solid angle.
-void tell_reach(const sqt::Samples& samples, const std::string& file) {
+void report_reach(const sqt::Samples& samples, const std::string& file) {
   if (samples.info.quantity != sqt::Quantity::bsdf) return;
   const size_t channels = samples.info.wavelength_um.size();
   double out = 0, in = 0;
@@ -29,7 +29,7 @@ void tell_reach(const sqt::Samples& samples, const std::string& file) {
   if (std::min(out, in) < 75 * kDegree)
     note(strf(
         "%s: samples reach %.0f degrees from the normal in the outgoing and %.0f in the incident direction; beyond, "
-        "the nearest ones hold, and no error is told of it",
+        "the nearest ones hold, and no error of it is reported",
         file.c_str(), out / kDegree, in / kDegree));
 }
 
@@ -49,7 +49,7 @@ std::shared_ptr<const sqt::Function> interpolated(const sqt::Samples& samples, c
   const double longest = *std::max_element(samples.info.wavelength_um.begin(), samples.info.wavelength_um.end());
   if (longest > 100)
     warn(strf("%s: wavelengths reach %g um; are they in nm? columns and lists are in um", file.c_str(), longest));
-  tell_reach(samples, file);
+  report_reach(samples, file);
   return sqt::interpolate(samples);
 }
 

@@ -137,7 +137,7 @@ double aim_of(const InspectOptions& o, const SqtFile& file, std::optional<size_t
   return std::max(kFinest, figures ? figures->number("l1", 0) : 0);
 }
 
-void tell_difference(const InspectOptions& o, const Comparison::Figures& f, double aim, const std::string& larger) {
+void report_difference(const InspectOptions& o, const Comparison::Figures& f, double aim, const std::string& larger) {
   note(o.export_to + " against the fit: " + figures_text(f));
   if (f.l1 > aim)
     warn(strf("%s: l1 of %.3g %% is more than the %.3g %% that were to be kept%s", o.export_to.c_str(), 100 * f.l1,
@@ -145,7 +145,7 @@ void tell_difference(const InspectOptions& o, const Comparison::Figures& f, doub
 }
 
 // The part of the total that no table of values holds.
-void tell_dirac(const sqt::Bundle& bundle, const std::string& path) {
+void report_dirac(const sqt::Bundle& bundle, const std::string& path) {
   if (!bundle.info().has_delta()) return;
   double most = 0;
   for (int theta = 0; theta < 90; theta += 5)
@@ -166,7 +166,7 @@ void export_bsdf(const InspectOptions& o, const SqtFile& file) {
     if (!o.export_size && f.l1 > aim && size.side < 512) continue;
     write_file(o.export_to, rgl_of(fitted, about + "\nagainst the fit: " + figures_text(f), size));
     note(strf("%s: tables of %zu x %zu", o.export_to.c_str(), size.side, size.side));
-    return tell_difference(o, f, aim, size.side < 512 ? ": --export-size makes it finer" : "");
+    return report_difference(o, f, aim, size.side < 512 ? ": --export-size makes it finer" : "");
   }
 }
 
@@ -183,7 +183,7 @@ void export_tree(const InspectOptions& o, const SqtFile& file) {
   write_file(o.export_to, tree.xml(command_line() + "\nagainst the fit: " + figures_text(f)));
   note(strf("%s: channel %lld (%g um) as Visible, %zu leaves, the smallest 2^-%d wide", o.export_to.c_str(), o.channel,
             bundle.info().function.wavelength_um[channel], tree.leaves(), tree.levels()));
-  tell_difference(o, f, aim.error, aim.leaves < TensorTree::kMostLeaves ? ": --export-size allows more leaves" : "");
+  report_difference(o, f, aim.error, aim.leaves < TensorTree::kMostLeaves ? ": --export-size allows more leaves" : "");
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ void export_bundle(const InspectOptions& o, const SqtFile& file) {
   if (extension == ".xml") export_tree(o, file);
   if (extension == ".csv") write_file(o.export_to, csv_of(*file.bundle, size));
   if (extension == ".raw") write_file(o.export_to, raw_of(*file.bundle, size));
-  tell_dirac(*file.bundle, o.export_to);
+  report_dirac(*file.bundle, o.export_to);
   note("wrote " + o.export_to);
 }
 

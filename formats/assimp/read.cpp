@@ -112,7 +112,7 @@ class Builder {
   }
   void mesh(size_t k);
   void materials();
-  void tell() const;
+  void report_left_out() const;
   double unit() const { return options_.unit_m * (model_.unit_cm > 0 ? model_.unit_cm / 100 : 1); }
 
   AssimpModel model_;
@@ -158,7 +158,7 @@ void Builder::materials() {
     }
 }
 
-void Builder::tell() const {
+void Builder::report_left_out() const {
   const auto say = [&](const char* code, uint64_t count, const char* what) {
     if (count) report_.add(code, whole_.file, {whole_, strf("%zu %s", static_cast<size_t>(count), what)}, count);
   };
@@ -203,7 +203,7 @@ SourceModel Builder::run(const Affine3& turn) {
     if (!group.name.empty()) result_.groups.push_back(std::move(group));
   if (flat) report_.add("SP706", whole_.file, {whole_, strf("%zu nodes are flattened to nothing", flat)}, flat);
   materials();
-  tell();
+  report_left_out();
   return std::move(result_);
 }
 

@@ -286,14 +286,14 @@ void Reader::member(const XmlElement& e) {
 }
 
 CityModel Reader::finish() {
-  const auto tell = [&](const char* code, size_t count, const char* what) {
+  const auto add_finding = [&](const char* code, size_t count, const char* what) {
     if (count) report_.add(code, model_.file, {Where{model_.file, 0, 0, {}, -1}, strf("%zu %s", count, what)}, count);
   };
-  tell("SP205", lines_, "geometries of points or lines");
-  tell("SP705", none_, "objects have no geometry of the level of detail that is asked for");
-  tell("SP705", implicit_, "implicit geometries are in files of their own, or nowhere, and left out");
-  tell("SP705", lost_, "references to surfaces that are not in the file");
-  tell("SP705", other_systems_, "elements name another reference system than the first, which is taken for all");
+  add_finding("SP205", lines_, "geometries of points or lines");
+  add_finding("SP705", none_, "objects have no geometry of the level of detail that is asked for");
+  add_finding("SP705", implicit_, "implicit geometries are in files of their own, or nowhere, and left out");
+  add_finding("SP705", lost_, "references to surfaces that are not in the file");
+  add_finding("SP705", other_systems_, "elements name another reference system than the first, which is taken for all");
   return std::move(model_);
 }
 

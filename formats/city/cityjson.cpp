@@ -95,12 +95,12 @@ void Reader::surfaces(const Params& boundaries, const std::optional<Params>& val
                       const Vertices& vertices, const std::vector<std::string>& kinds, const std::string& type,
                       std::vector<CityModel::Surface>& to) const {
   if (boundaries.kind() != Params::Kind::list) throw fault(at, "a list is expected");
-  const bool told = values && values->kind() == Params::Kind::list;
-  if (told && values->size() != boundaries.size())
+  const bool listed = values && values->kind() == Params::Kind::list;
+  if (listed && values->size() != boundaries.size())
     throw fault(at, strf("%zu boundaries and %zu semantic values", boundaries.size(), values->size()));
   for (size_t k = 0; k < boundaries.size(); ++k) {
     const std::string here = strf("%s[%zu]", at.c_str(), k);
-    const auto value = told ? std::optional((*values)[k]) : std::nullopt;
+    const auto value = listed ? std::optional((*values)[k]) : std::nullopt;
     if (shells > 0) {
       surfaces(boundaries[k], value, shells - 1, here, vertices, kinds, type, to);
       continue;
@@ -219,13 +219,13 @@ void Reader::document(const Params& root, int line) {
 }
 
 CityModel Reader::finish() {
-  const auto tell = [&](const char* code, size_t count, const char* what) {
+  const auto add_finding = [&](const char* code, size_t count, const char* what) {
     if (count) report_.add(code, model_.file, {Where{model_.file, 0, 0, {}, -1}, strf("%zu %s", count, what)}, count);
   };
-  tell("SP205", lines_, "geometries of points or lines");
-  tell("SP705", none_, "objects have no geometry of the level of detail that is asked for");
-  tell("SP706", unshaped_, "objects have no geometry of their own");
-  tell("SP706", textured_, "geometries with appearances: display colours and textures are no spectra");
+  add_finding("SP205", lines_, "geometries of points or lines");
+  add_finding("SP705", none_, "objects have no geometry of the level of detail that is asked for");
+  add_finding("SP706", unshaped_, "objects have no geometry of their own");
+  add_finding("SP706", textured_, "geometries with appearances: display colours and textures are no spectra");
   return std::move(model_);
 }
 

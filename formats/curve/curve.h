@@ -23,7 +23,7 @@ struct CurveOptions {
   double scale = 1;      // factor on the values, after percent became shares
   std::string spectrum;  // of a library: a spectrum's name or its number from 1; empty = the first
   // Called with what is left out of a curve; may be empty.
-  std::function<void(const std::string& path, const std::string& what)> tell = {};
+  std::function<void(const std::string& path, const std::string& what)> on_warning = {};
 };
 
 // Reads one curve; wavelengths become micron, percent becomes shares. Error with file and line otherwise.

@@ -149,8 +149,8 @@ Curve curve_of(std::vector<double> um, std::vector<double> value, const CurveOpt
     if (gaps.size() < 80) gaps += strf("%s%.4g to %.4g", gaps.empty() ? "" : ", ", um[i], um[last]);
     i = last;
   }
-  if (options.tell)
-    options.tell(
+  if (options.on_warning)
+    options.on_warning(
         where.file,
         strf("%zu of %zu values are marks of deleted channels (-1.23e34; %s um): the curve is linear "
              "across them%s",

@@ -115,8 +115,8 @@ std::vector<std::string> ResponseFile::response_variables(const std::string& wav
     if (!along) continue;
     fitting.push_back(v);
     const std::string name = last_name(v);
-    const bool doubt = has_any(name, {"uncert", "std", "stdev", "error", "flag", "count", "min", "max"});
-    if (has_any(name, {"response", "rsr", "srf", "isrf", "transmi"}) && !doubt) named.push_back(v);
+    const bool uncertainty = has_any(name, {"uncert", "std", "stdev", "error", "flag", "count", "min", "max"});
+    if (has_any(name, {"response", "rsr", "srf", "isrf", "transmi"}) && !uncertainty) named.push_back(v);
   }
   const std::vector<std::string>& taken = named.empty() ? fitting : named;
   if (taken.empty())

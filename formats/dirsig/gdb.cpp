@@ -35,7 +35,7 @@ class GdbReader {
         throw fault("'" + std::string(word.substr(0, 60)) + "' is no keyword here", "OBJECT, PART, FACE or END");
       }
     }
-    tell_part();
+    add_part();
     if (!facets_) throw fault("there is no facet");
     return std::move(made_);
   }
@@ -80,14 +80,14 @@ class GdbReader {
   }
 
   void part() {
-    tell_part();
+    add_part();
     const std::string name(line("the part's name"));
     line("the part's id");
     part_ = &entry(made_.account, "PART", name, Fate::exact);
     made_.obj += "g " + name + "\n";
   }
   // Fields of the facets of a part, each said once.
-  void tell_part() {
+  void add_part() {
     if (!in_part_) return;
     Item& to = part_ ? *part_ : made_.account;
     const std::string many = strf("%zu facets", in_part_);
@@ -98,7 +98,7 @@ class GdbReader {
       entry(to, "temperature", strf("%zu facets", warm_), Fate::exact, "degrees Celsius, of materials of their own");
     else
       entry(to, "temperature", many, Fate::ignored, "none is given");
-    entry(to, "thickness", many, Fate::ignored, "THERM's alone, which the materials' entries tell");
+    entry(to, "thickness", many, Fate::ignored, "THERM's alone, which the materials' entries state");
     entry(to, "unused fields", many, Fate::ignored, "DIRSIG does not use them either");
     entry(to, "vertices", many, Fate::exact);
     entry(to, "normal", many, Fate::converted,

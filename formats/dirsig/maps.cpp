@@ -106,7 +106,7 @@ void SceneWriter::read_projector(const Item& map, const std::string& image, Tree
   if (at.size() < 2) throw insert->error("an insert point is x and y");
   const double gx = g[0], gy = g.size() > 1 ? g[1] : g[0];
   const auto size = size_of_image(image);
-  if (!size) throw map.error("the size of the image '" + image + "' cannot be told", "PNG, PGM, PPM or ENVI");
+  if (!size) throw map.error("the size of the image '" + image + "' cannot be found", "PNG, PGM, PPM or ENVI");
   const double wide = gx * static_cast<double>((*size)[0]), high = gy * static_cast<double>((*size)[1]);
   // Ours begins at the outer corner of the first pixel, rows going south.
   const double left = at[0], top = cartesian || !origin ? at[1] + high : at[1];

@@ -52,9 +52,9 @@ void SimulationWriter::use_weather(const Item& named) {
     return lost(e.message());
   }
   const double mean_sun = std::round((*origin_)[1] / 15);
-  const bool told = zone_h_ && std::fabs(*zone_h_ - (*origin_)[1] / 15) <= kMostOffMean;
+  const bool zoned = zone_h_ && std::fabs(*zone_h_ - (*origin_)[1] / 15) <= kMostOffMean;
   asked.site = *origin_;
-  asked.utc_offset_h = told ? *zone_h_ : mean_sun;
+  asked.utc_offset_h = zoned ? *zone_h_ : mean_sun;
   const Instant epoch = instant_from_utc(parse_iso8601(epoch_));
   // The clock on the wall, as if it were UTC.
   Utc local = utc_from_instant(epoch + asked.utc_offset_h * 3600);
@@ -79,7 +79,7 @@ void SimulationWriter::use_weather(const Item& named) {
   root_.set("weather", std::move(weather)), root_.set("heat", std::move(heat));
   named.mark(Fate::approximated,
              "its first row is taken as midnight of " + asked.date +
-                 strf(", UTC%+g h (%s)", asked.utc_offset_h, told ? "the tasks' zone" : "the mean sun's"));
+                 strf(", UTC%+g h (%s)", asked.utc_offset_h, zoned ? "the tasks' zone" : "the mean sun's"));
 }
 
 }  // namespace suite::dirsig

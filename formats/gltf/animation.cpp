@@ -69,7 +69,7 @@ class Animator {
  private:
   Channel channel(const tinygltf::AnimationChannel& c, const std::string& at, size_t width);
   std::set<double> times_of(const Moving& moving) const;
-  void tell(const char* code, size_t count, const std::string& what, Report& report) const {
+  void add_finding(const char* code, size_t count, const std::string& what, Report& report) const {
     if (count) report.add(code, file_, {Where{file_, 0, 0, {}, -1}, pointer_ + ": " + what}, count);
   }
 
@@ -135,9 +135,9 @@ void Animator::read(Report& report) {
     if (to) throw fault(file_, at, strf("a second %s of node %d", c.target_path.c_str(), c.target_node));
     to = channel(c, at, place ? 3 : 4);
   }
-  tell("SP705", scales, "scales that change with time; sizes stay those of the nodes", report);
-  tell("SP705", weights, "weights of morph targets that change with time", report);
-  tell("SP705", others, "channels of an unknown kind", report);
+  add_finding("SP705", scales, "scales that change with time; sizes stay those of the nodes", report);
+  add_finding("SP705", weights, "weights of morph targets that change with time", report);
+  add_finding("SP705", others, "channels of an unknown kind", report);
 }
 
 // The times at which poses become keys.
@@ -188,8 +188,8 @@ void Animator::apply(const SourceModelOptions& options, std::vector<Local>& loca
     for (const double t : times_of(moving)) motion.keys.push_back({t, pose_at(t)});
     locals[n].motion = interpolated_track(std::move(motion));
   }
-  tell("SP707", jumps_, strf("jumps take %g s", kJump_s), report);
-  tell("SP707", splines_, strf("splines are %zu straight pieces from key to key", kSplinePieces), report);
+  add_finding("SP707", jumps_, strf("jumps take %g s", kJump_s), report);
+  add_finding("SP707", splines_, strf("splines are %zu straight pieces from key to key", kSplinePieces), report);
 }
 
 // The animation that is asked for; nothing when none is, or there is none.

@@ -67,6 +67,6 @@ void animate(const tinygltf::Model& model, const std::string& file, const Source
 // Everything else that the file says and that has no place in a scene. Error: it needs an extension that is not read.
 void check_extensions(const tinygltf::Model& model, const std::string& file);
 // textures: base colours are not left out.
-void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file, bool textures, Report& report);
+void report_left_out(const tinygltf::Model& model, const std::string& file, bool textures, Report& report);
 
 }  // namespace suite::gltf

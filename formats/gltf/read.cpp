@@ -204,7 +204,7 @@ SourceModel Builder::run() {
   if (flat_)
     report_.add("SP706", file_, {Where{file_, 0, 0, {}, -1}, strf("%zu nodes are flattened to nothing", flat_)}, flat_);
   materials();
-  tell_what_is_left_out(model_, file_, options_.textures, report_);
+  report_left_out(model_, file_, options_.textures, report_);
   return std::move(result_);
 }
 

@@ -123,9 +123,9 @@ void Writer::fail(const std::string& what) const {
   give_up();
   const size_t slash = path_.rfind('/'),
                room = free_bytes(slash == std::string::npos ? "." : path_.substr(0, slash + 1));
-  const bool told = cause == ENOSPC || cause == EFBIG || cause == EDQUOT || cause == EIO;
+  const bool by_system = cause == ENOSPC || cause == EFBIG || cause == EDQUOT || cause == EIO;
   throw Error(Where{path_, 0, 0, {}, -1},
-              "cannot be written: " + what + (told ? strf(": %s", std::strerror(cause)) : ""),
+              "cannot be written: " + what + (by_system ? strf(": %s", std::strerror(cause)) : ""),
               "is the disk full? " + human_bytes(static_cast<double>(room)) + " are free there");
 }
 

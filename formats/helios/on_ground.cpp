@@ -15,7 +15,7 @@ namespace suite::helios {
 namespace {
 
 using Visit = std::function<void(Vec3)>;
-using Tell = std::function<void(const char*, const Part&, const std::string&)>;
+using AddFinding = std::function<void(const char*, const Part&, const std::string&)>;
 
 // The corners of triangles, each as often as it is one; of cubes their centres.
 class Corners {
@@ -170,8 +170,8 @@ struct Ground {
 
 class Placer {
  public:
-  Placer(std::vector<Part>& parts, const HeliosFiles& files, const Tell& tell)
-      : parts_(parts), files_(files), tell_(tell), corners_(files) {}
+  Placer(std::vector<Part>& parts, const HeliosFiles& files, const AddFinding& add_finding)
+      : parts_(parts), files_(files), add_finding_(add_finding), corners_(files) {}
   void run() {
     find_grounds();
     for (Part& part : parts_)
@@ -185,7 +185,7 @@ class Placer {
 
   std::vector<Part>& parts_;
   const HeliosFiles& files_;
-  const Tell& tell_;
+  const AddFinding& add_finding_;
   Corners corners_;
   std::vector<Ground> grounds_;
 };
@@ -195,7 +195,7 @@ void Placer::find_grounds() {
     try {
       if (!is_ground(parts_[i], files_)) continue;
     } catch (const Error& e) {
-      tell_("SP705", parts_[i], "its materials cannot be read, so it is no ground for others: " + e.message());
+      add_finding_("SP705", parts_[i], "its materials cannot be read, so it is no ground for others: " + e.message());
       continue;
     }
     Ground ground{i, {}, {}};
@@ -214,7 +214,7 @@ Ground* Placer::under(Vec3 p) {
 
 void Placer::place(Part& part) {
   if (part.kind == Part::Kind::voxels)
-    return tell_("SP705", part, "'onGround' of voxels: they stand at their offset, not on the ground");
+    return add_finding_("SP705", part, "'onGround' of voxels: they stand at their offset, not on the ground");
   Vec3 lowest{0, 0, INFINITY};
   long long all = 0;
   corners_.each(part, [&](Vec3 p) {
@@ -224,14 +224,15 @@ void Placer::place(Part& part) {
   if (!all) return;
   Ground* const ground = under(lowest);
   if (!ground)
-    return tell_("SP707", part,
-                 "'onGround': no part with a material that says helios_isGround lies below; it stays at its offset, "
-                 "as there");
+    return add_finding_(
+        "SP707", part,
+        "'onGround': no part with a material that says helios_isGround lies below; it stays at its offset, "
+        "as there");
   const Part& of = parts_[ground->part];
   if (!ground->plane) ground->plane = plane_of(of, corners_);
   const Plane& plane = *ground->plane;
   if (!(std::abs(plane.normal.z) > 1e-12))
-    return tell_("SP705", part, "'onGround': the ground '" + of.id + "' is upright; it stays at its offset");
+    return add_finding_("SP705", part, "'onGround': the ground '" + of.id + "' is upright; it stays at its offset");
   double above = lowest.z - plane.height(lowest);
   if (part.on_ground != 1) {
     const long long step = part.on_ground < 0 ? 1 : std::max(1LL, all / std::min(part.on_ground, all));
@@ -242,7 +243,7 @@ void Placer::place(Part& part) {
     });
   }
   part.shift.z -= above;
-  tell_(
+  add_finding_(
       "SP707", part,
       strf("'onGround': moved by %.3f m onto the plane through the ground '%s', as there; that ground is %.3f m (rms) "
            "beside the plane",
@@ -251,8 +252,8 @@ void Placer::place(Part& part) {
 
 }  // namespace
 
-void put_on_ground(std::vector<Part>& parts, const HeliosFiles& files, const Tell& tell) {
-  Placer(parts, files, tell).run();
+void put_on_ground(std::vector<Part>& parts, const HeliosFiles& files, const AddFinding& add_finding) {
+  Placer(parts, files, add_finding).run();
 }
 
 }  // namespace suite::helios

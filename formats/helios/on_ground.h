@@ -16,6 +16,6 @@ namespace suite::helios {
 // with a code of a report. Error, located: as `files`, but a missing file of materials, which is told.
 // Based on: HELIOS++, Scene::doForceOnGround (https://github.com/3dgeo-heidelberg/helios, src/scene/Scene.cpp).
 void put_on_ground(std::vector<Part>& parts, const HeliosFiles& files,
-                   const std::function<void(const char* code, const Part& part, const std::string& what)>& tell);
+                   const std::function<void(const char* code, const Part& part, const std::string& what)>& add_finding);
 
 }  // namespace suite::helios

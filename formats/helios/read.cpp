@@ -71,7 +71,7 @@ class Reader {
   bool name_for(const std::string& path, const std::string& how, std::map<std::string, std::string>& names,
                 std::string& name);
   static std::optional<std::string> value_of(const XmlElement& e, std::string_view key);
-  void tell(const char* code, const XmlElement& e, const std::string& what) {
+  void add_finding(const char* code, const XmlElement& e, const std::string& what) {
     report_.add(code, file_, {e.where(), what});
   }
 
@@ -118,8 +118,9 @@ void Reader::load_terrain(const XmlElement& e, const std::string& path, Part& pa
 
 void Reader::load_voxels(const XmlElement& e, const std::string& path, Part& part) {
   if (const std::string mode = lower(value_of(e, "intersectionMode").value_or("transmittive")); mode != "transmittive")
-    tell("SP707", e,
-         "voxels of mode '" + printable(mode) + "' are solid cubes there; here their leaves fill their cells evenly");
+    add_finding(
+        "SP707", e,
+        "voxels of mode '" + printable(mode) + "' are solid cubes there; here their leaves fill their cells evenly");
   if (name_for(path, "", grid_of_, part.object))
     grids_.add("  " + yaml_quoted(part.object) + ": {voxels: " + yaml_quoted(path) + ", medium: " + kFoliage + "}",
                e.where());
@@ -132,9 +133,9 @@ void Reader::load_points(const XmlElement& e, const std::string& path, Part& par
   part.separators = value_of(e, "separator").value_or("");
   if (!name_for(path, strf("%.17g %s", edge, part.separators.c_str()), object_of_, part.object)) return;
   const Cubes cubes = cubes_of_xyz(files_.text_of(path), path, part.separators, edge);
-  tell("SP707", e,
-       strf("%zu points are %zu solid cubes of %g m, as there; their colours and normals are left out", cubes.points,
-            cubes.centres.size(), edge));
+  add_finding("SP707", e,
+              strf("%zu points are %zu solid cubes of %g m, as there; their colours and normals are left out",
+                   cubes.points, cubes.centres.size(), edge));
   objects_.add(
       "  " + yaml_quoted(part.object) + ": {obj_text: " + yaml_quoted(cubes.obj) + ", material: " + kSurface + "}",
       e.where());
@@ -144,7 +145,7 @@ void Reader::load(const XmlElement& e, const std::string& kind, Part& part) {
   std::string path = value_of(e, "filepath").value_or("");
   if (path.empty()) throw e.fault("there is no param 'filepath'");
   std::replace(path.begin(), path.end(), '\\', '/');
-  if (path.find('*') != path.npos) return tell("SP705", e, "several files at once, '" + printable(path) + "'");
+  if (path.find('*') != path.npos) return add_finding("SP705", e, "several files at once, '" + printable(path) + "'");
   part.path = path;
   part.matfile = value_of(e, "matfile").value_or(""), part.material = value_of(e, "matname").value_or("");
   std::replace(part.matfile.begin(), part.matfile.end(), '\\', '/');
@@ -216,7 +217,7 @@ void Reader::filter(const XmlElement& e, Part& part) {
   } else if (kind == "translate") {
     translate(e, part);
   } else {
-    tell("SP705", e, "filter '" + printable(kind) + "'");
+    add_finding("SP705", e, "filter '" + printable(kind) + "'");
   }
 }
 
@@ -226,7 +227,7 @@ void Reader::part(const XmlElement& e) {
     if (child.name() == "filter")
       filter(child, part);
     else
-      tell("SP705", child, "'" + printable(child.name()) + "': parts stay as and where they are loaded");
+      add_finding("SP705", child, "'" + printable(child.name()) + "': parts stay as and where they are loaded");
   });
   if (part.object.empty()) return;
   part.id = e.attribute("id").value_or("");
@@ -261,12 +262,12 @@ HeliosText Reader::run(const XmlElement& document) {
     if (!scenes++) scene = e;
   });
   if (!scene) throw document.fault("there is no scene in it");
-  if (scenes > 1) tell("SP705", *scene, strf("the first of %zu scenes is taken", scenes));
+  if (scenes > 1) add_finding("SP705", *scene, strf("the first of %zu scenes is taken", scenes));
   scene->each_child([&](const XmlElement& e) {
     if (e.name() == "part")
       part(e);
     else
-      tell("SP706", e, "'" + printable(e.name()) + "' belongs to the simulation");
+      add_finding("SP706", e, "'" + printable(e.name()) + "' belongs to the simulation");
   });
   place_parts();
   const Where where = scene->where();
@@ -275,12 +276,13 @@ HeliosText Reader::run(const XmlElement& document) {
   all.add("scene: 1", where);
   all.add("name: " + yaml_quoted(name), where);
   all.add(strf("materials: {%s: {model: lambert, reflectance: %g}}", kSurface, kGrey), where);
-  tell("SP708", *scene, strf("all surfaces: a grey of reflectance %g stands in (material '%s')", kGrey, kSurface));
+  add_finding("SP708", *scene,
+              strf("all surfaces: a grey of reflectance %g stands in (material '%s')", kGrey, kSurface));
   if (!grids_.yaml.empty()) {
     all.add(strf("media: {%s: {leaves: {reflectance: %g, transmittance: %g}}}", kFoliage, kLeaf, kLeaf), where);
-    tell("SP708", *scene,
-         strf("all voxels: leaves that reflect and transmit %g stand in (--set media.%s.leaves.reflectance=...)", kLeaf,
-              kFoliage));
+    add_finding("SP708", *scene,
+                strf("all voxels: leaves that reflect and transmit %g stand in (--set media.%s.leaves.reflectance=...)",
+                     kLeaf, kFoliage));
   }
   const auto section = [&](const char* key, const Lines& lines) {
     if (lines.yaml.empty()) return;

@@ -89,7 +89,7 @@ void skip_tilt(const std::string& tilt, TextLines& lines, Numbers& in) {
             lines.where().file.c_str(), 100 * largest));
 }
 
-void tell_lumens(const IesLuminaire& l, const std::string& file) {
+void note_lumens(const IesLuminaire& l, const std::string& file) {
   const double all = l.lumens();
   if (l.lamp_lumens > 0 && all > 1.05 * l.lamp_lumens)
     warn(strf("%s: the candela make %.4g lm, its lamps have %.4g", file.c_str(), all, l.lamp_lumens));
@@ -183,7 +183,7 @@ IesLuminaire parse_ies(std::string_view text, const std::string& file_name) {
   l.horizontal = ascending(in, horizontals, "horizontal angles", 0, 360.001);
   check_ranges(l, file_name, in);
   for (size_t i = 0; i < verticals * horizontals; ++i) l.candela.push_back(factor * in.next("candela", 0, 1e12));
-  tell_lumens(l, file_name);
+  note_lumens(l, file_name);
   return l;
 }
 

@@ -213,26 +213,27 @@ void Reader::points() {
 // What the header says of the points against the points themselves. A file that was cut, added to or re-projected by a
 // program that left the header as it was is read by its points.
 void Reader::check_header() {
-  const auto tell = [&](size_t at, const std::string& what) {
+  const auto add_finding = [&](size_t at, const std::string& what) {
     report_.add("SP709", file_, {Where{file_, 0, 0, {}, static_cast<long long>(at)}, what});
   };
   const size_t room = (bytes_.size() - head_.first_point) / head_.point_bytes;
   const bool has_more_records =
       (head_.minor >= 3 && get<uint64_t>(227) > 0) || (head_.minor == 4 && get<uint64_t>(235) > 0);
   if (room > head_.points && !has_more_records)
-    tell(107, strf("the header counts %zu points, the file has room for %zu: those behind are not read", head_.points,
-                   room));
+    add_finding(107, strf("the header counts %zu points, the file has room for %zu: those behind are not read",
+                          head_.points, room));
   const uint32_t old_count = get<uint32_t>(107);
   if (head_.minor == 4 && old_count != 0 && old_count != head_.points)
-    tell(107, strf("the header counts %u points in its older field and %zu in the one of version 1.4, which is taken",
-                   old_count, head_.points));
+    add_finding(107,
+                strf("the header counts %u points in its older field and %zu in the one of version 1.4, which is taken",
+                     old_count, head_.points));
   if (all_.empty()) return;
   for (int c = 0; c < 3; ++c) {
     const size_t at = 179 + 16 * static_cast<size_t>(c);
     const double high = get<double>(at), low = get<double>(at + 8), step = std::fabs(head_.scale[c]);
     if (std::fabs(high - all_.high[c]) <= 1.01 * step && std::fabs(low - all_.low[c]) <= 1.01 * step) continue;
-    return tell(at, strf("the header says %c from %.10g to %.10g, the points are from %.10g to %.10g", "xyz"[c], low,
-                         high, all_.low[c], all_.high[c]));
+    return add_finding(at, strf("the header says %c from %.10g to %.10g, the points are from %.10g to %.10g", "xyz"[c],
+                                low, high, all_.low[c], all_.high[c]));
   }
 }
 

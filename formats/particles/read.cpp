@@ -12,8 +12,8 @@ namespace suite {
 namespace {
 
 constexpr size_t kMostWavelengths = 10000, kMostRows = 2'000'000;
-constexpr double kAllowed = 0.01, kTold = 1e-5;  // off from 1
-constexpr double kClosest = 1e-4;                // degrees between angles
+constexpr double kAllowed = 0.01, kReported = 1e-5;  // off from 1
+constexpr double kClosest = 1e-4;                    // degrees between angles
 
 bool names_columns(const TextLines& lines) {
   const char c = lines.word(0)[0];
@@ -102,8 +102,9 @@ class Ones {
       throw Error(where, strf("%s at %g um is %g, not 1", what_, wavelength_um, value), hint_);
     if (std::fabs(value - 1) > std::fabs(worst_ - 1)) worst_ = value, at_ = wavelength_um;
   }
-  void tell(std::vector<std::string>& notes) const {
-    if (std::fabs(worst_ - 1) > kTold) notes.push_back(strf("%s was made 1; it was %.5f at %g um", what_, worst_, at_));
+  void add_notes(std::vector<std::string>& notes) const {
+    if (std::fabs(worst_ - 1) > kReported)
+      notes.push_back(strf("%s was made 1; it was %.5f at %g um", what_, worst_, at_));
   }
 
  private:
@@ -138,7 +139,7 @@ void read_bulk(const Block& block, ReadParticles& out) {
   const double there = data.extinction_at(green);
   Ones ones("extinction_relative", "it is over the extinction at 0.55 um; extinction_m2_g has a scale of its own");
   ones.take(there, green, block.where);
-  ones.tell(out.notes);
+  ones.add_notes(out.notes);
   for (double& e : data.extinction) e /= there;
 }
 
@@ -209,7 +210,7 @@ void read_angles(const Block& block, ReadParticles& out) {
     if (!any_scale) ones.take(integral, w, block.place(from));
     return gridded_phase(angles, values);
   });
-  ones.tell(out.notes);
+  ones.add_notes(out.notes);
 }
 
 // A series on the grid, without what of it is negative.
@@ -239,7 +240,7 @@ void read_moments(const Block& block, ReadParticles& out) {
     ones.take(moments[0], w, block.place(from));
     return series(std::move(moments), w, block.place(from));
   });
-  ones.tell(out.notes);
+  ones.add_notes(out.notes);
 }
 
 void read_phases(const Block& block, ReadParticles& out) {

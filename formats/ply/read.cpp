@@ -115,7 +115,7 @@ class Reader {
   void face(std::span<const double> corner);
   bool known(std::span<const double> corner);
   void add(const char* code, const std::string& what) { builder_.add(code, values_.here(), what); }
-  void tell(const char* code, const std::string& what) { builder_.add(code, Where{file_, 0, 0, {}, -1}, what); }
+  void add_finding(const char* code, const std::string& what) { builder_.add(code, Where{file_, 0, 0, {}, -1}, what); }
 
   const Header header_;
   Values values_;
@@ -160,7 +160,8 @@ void Reader::vertices(const Element& e) {
   for (const int p : place)
     if (p < 0) throw Error(Where{file_, 0, 0, {}, -1}, "vertices without x, y and z");
   const bool has_normal = std::min({normal[0], normal[1], normal[2]}) >= 0, has_uv = std::min(uv[0], uv[1]) >= 0;
-  if (e.find({"red", "r", "diffuse_red"}) >= 0) tell("SP706", "colours of vertices: display colours are no spectra");
+  if (e.find({"red", "r", "diffuse_red"}) >= 0)
+    add_finding("SP706", "colours of vertices: display colours are no spectra");
   std::vector<double> row(e.properties.size());
   for (size_t k = 0; k < e.count; ++k) {
     values_.begin_row();
@@ -212,8 +213,9 @@ void Reader::faces(const Element& e) {
   if (indices < 0 || !e.properties[static_cast<size_t>(indices)].list)
     throw Error(Where{file_, 0, 0, {}, -1}, "faces without a list 'vertex_indices'");
   if (e.find({"texcoord"}) >= 0)
-    tell("SP705", "texture coordinates of single faces ('texcoord'); those of vertices are read");
-  if (e.find({"red", "r", "diffuse_red"}) >= 0) tell("SP706", "colours of faces: display colours are no spectra");
+    add_finding("SP705", "texture coordinates of single faces ('texcoord'); those of vertices are read");
+  if (e.find({"red", "r", "diffuse_red"}) >= 0)
+    add_finding("SP706", "colours of faces: display colours are no spectra");
   std::vector<double> corner;
   for (size_t k = 0; k < e.count; ++k) {
     values_.begin_row();
@@ -277,12 +279,12 @@ SourceMesh Reader::run() {
       strips(e);
     } else {
       skip(e);
-      tell("SP706", strf("%zu of '%s' are left out", e.count, printable(e.name).substr(0, 80).c_str()));
+      add_finding("SP706", strf("%zu of '%s' are left out", e.count, printable(e.name).substr(0, 80).c_str()));
     }
   }
   if (mesh_.indices.empty())
-    tell("SP204", mesh_.positions.empty() ? "neither vertices nor faces"
-                                          : strf("%zu points and no face", mesh_.positions.size()));
+    add_finding("SP204", mesh_.positions.empty() ? "neither vertices nor faces"
+                                                 : strf("%zu points and no face", mesh_.positions.size()));
   return builder_.take();
 }
 

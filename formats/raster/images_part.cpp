@@ -32,7 +32,7 @@ double scale_of(const OIIO::TypeDesc& stored) {
   }
 }
 
-std::string told(const std::string& problem) { return problem.empty() ? "unknown reason" : problem; }
+std::string reason(const std::string& problem) { return problem.empty() ? "unknown reason" : problem; }
 
 ImageRead read(const std::string& path, std::span<const std::byte> packed, ImageFacts& facts,
                const std::function<float*()>& room) {
@@ -59,7 +59,7 @@ ImageRead read(const std::string& path, std::span<const std::byte> packed, Image
   const int bits = spec.get_int_attribute("oiio:BitsPerSample", 0);
   if (is_unsigned && bits > 0 && static_cast<size_t>(bits) < 8 * spec.format.size()) facts.scale = (1 << bits) - 1;
   if (!input->read_image(0, 0, 0, facts.channels, OIIO::TypeDesc::FLOAT, room()))
-    return {true, told(input->geterror())};
+    return {true, reason(input->geterror())};
   return {true, {}};
 }
 
@@ -67,7 +67,7 @@ ImageRead read(const std::string& path, std::span<const std::byte> packed, Image
 std::string write(const ImageToWrite& image, const std::function<const float*(int)>& row,
                   std::vector<unsigned char>& bytes) {
   const auto out = OIIO::ImageOutput::create(image.format);
-  if (!out) return told(OIIO::geterror());
+  if (!out) return reason(OIIO::geterror());
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::FLOAT);
   spec.channelnames = image.channels;
   spec.attribute("compression", "zip");
@@ -78,7 +78,7 @@ std::string write(const ImageToWrite& image, const std::function<const float*(in
   OIIO::Filesystem::IOVecOutput memory(bytes);
   bool fine = out->set_ioproxy(&memory) && out->open(image.format, spec);
   for (int y = 0; fine && y < image.height; ++y) fine = out->write_scanline(y, 0, OIIO::TypeDesc::FLOAT, row(y));
-  return fine && out->close() ? "" : told(out->geterror());
+  return fine && out->close() ? "" : reason(out->geterror());
 }
 
 }  // namespace

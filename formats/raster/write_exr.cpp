@@ -36,11 +36,11 @@ std::vector<ImageAttribute> attributes(const FloatRaster& r) {
   std::string names;
   for (const RasterBand& b : r.bands) names += (names.empty() ? "" : ", ") + b.name;
   all.push_back({"band_names", names});
-  const auto told = [&](double RasterBand::*number) {
+  const auto known = [&](double RasterBand::*number) {
     return std::all_of(r.bands.begin(), r.bands.end(), [&](const RasterBand& b) { return b.*number > 0; });
   };
-  if (told(&RasterBand::wavelength_um)) all.push_back({"wavelength_um", list(r, &RasterBand::wavelength_um)});
-  if (told(&RasterBand::fwhm_um)) all.push_back({"fwhm_um", list(r, &RasterBand::fwhm_um)});
+  if (known(&RasterBand::wavelength_um)) all.push_back({"wavelength_um", list(r, &RasterBand::wavelength_um)});
+  if (known(&RasterBand::fwhm_um)) all.push_back({"fwhm_um", list(r, &RasterBand::fwhm_um)});
   if (r.sun_deg) {
     all.push_back({"sun_azimuth_deg", static_cast<float>((*r.sun_deg)[0])});
     all.push_back({"sun_elevation_deg", static_cast<float>((*r.sun_deg)[1])});

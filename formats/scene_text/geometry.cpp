@@ -84,7 +84,7 @@ std::string cure_of_feet(const std::string& path, double unit) {
 }  // namespace
 
 // Heights that are marks of missing ones in many rasters, and no land on Earth.
-void Reader::tell_marks(const Params& file, const Raster& raster) {
+void Reader::report_marks(const Params& file, const Raster& raster) {
   for (const float mark : {-9999.0f, -32768.0f, -32767.0f, std::numeric_limits<float>::lowest()})
     if (const auto n = std::count(raster.values.begin(), raster.values.end(), mark); n && !is_no_data(raster, mark))
       report_.add("SP506", file.as_text(),
@@ -99,7 +99,7 @@ void Reader::read_heights(const Params& p, SourceTerrain& terrain) {
   if (raster.channels != 1) throw file.error(strf("%u channels", raster.channels), "heights are one channel", "SP504");
   terrain.width = raster.width;
   terrain.height = raster.height;
-  tell_marks(file, raster);
+  report_marks(file, raster);
   if (raster.scale_z != 0 && raster.scale_z != 1)
     report_.add(
         "SP508", file.as_text(),
@@ -144,7 +144,7 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
     } catch (const Error& e) {
       throw placed(e, p.at("terrain").where());
     }
-    tell_projection(map, ref.epsg, p.at("terrain"));
+    report_projection(map, ref.epsg, p.at("terrain"));
   }
   read_heights(p, g.terrain);
 }

@@ -50,11 +50,11 @@ Reader::EarthMap Reader::earth_map(int epsg, const Where& where) const {
   }
 }
 
-void Reader::tell_projection(const EarthMap& map, int epsg, const Params& file) {
+void Reader::report_projection(const EarthMap& map, int epsg, const Params& file) {
   if (!map.projection) return;
   report_.add("SP707", file.as_text(),
               {file.where(), strf("EPSG:%d, '", epsg) + printable(map.projection->name()) + "', is brought to WGS84 " +
-                                 map.projection->told()});
+                                 map.projection->description()});
 }
 
 std::function<Vec3(Vec3)> Reader::on_earth(const EarthMap& map, const GeoidRule& rule) const {
@@ -84,11 +84,11 @@ std::string Reader::known_systems() const {
 // system: as the file names it, which `epsg` replaces. longitude_first: the file has degrees in this order.
 std::function<Vec3(Vec3)> Reader::map_place(const Params& p, const std::string& system, const Params& file,
                                             bool longitude_first) {
-  const auto tell = [&](const std::string& what) { report_.add("SP707", file.as_text(), {file.where(), what}); };
+  const auto add_finding = [&](const std::string& what) { report_.add("SP707", file.as_text(), {file.where(), what}); };
   if (const auto local = p.find("local")) {
     const auto at = local->as_vec3();
     if (draft_.origin.given)
-      tell("the map is taken as flat around 'local': its north and its scale are not turned and corrected");
+      add_finding("the map is taken as flat around 'local': its north and its scale are not turned and corrected");
     return [at](Vec3 v) { return v - Vec3{at[0], at[1], at[2]}; };
   }
   std::optional<int> epsg = epsg_of_name(system);
@@ -105,9 +105,9 @@ std::function<Vec3(Vec3)> Reader::map_place(const Params& p, const std::string& 
                      "say 'height: geoid', or 'ellipsoid' to take them as they are", "SP504");
   const GeoidRule rule = read_heights_rule(p);
   if (known.heights() == MapSystem::Heights::unknown && !p.has("height"))
-    tell(
+    add_finding(
         strf("EPSG:%d says nothing of heights; they are taken as above the ellipsoid ('height: geoid' if not)", *epsg));
-  tell_projection(known, *epsg, file);
+  report_projection(known, *epsg, file);
   const auto place = [on = on_earth(known, rule), file](Vec3 v) {
     try {
       return on(v);

@@ -71,7 +71,7 @@ Curve Reader::read_curve_value(const Params& p) {
 
 CurveOptions Reader::curve_options() {
   CurveOptions options;
-  options.tell = [this](const std::string& path, const std::string& what) {
+  options.on_warning = [this](const std::string& path, const std::string& what) {
     report_.add("SP109", path, {Where{path, 0, 0, {}, -1}, what});
   };
   return options;

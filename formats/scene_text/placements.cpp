@@ -15,7 +15,7 @@ ScatterRule read_scatter(const Params& p) {
   ScatterRule rule;
   rule.density_per_m2 = p.number_in("density_per_m2", 1e-12, 1e6, "1/m2");
   rule.seed = static_cast<uint64_t>(p.integer("seed", 0, 1LL << 53, 1));
-  rule.turn = p.boolean("turn", true);
+  rule.turn = p.boolean("random_heading", true);
   if (const auto scale = p.find("scale")) {
     const std::vector<double> range = scale->as_numbers();
     if (range.size() != 2 || !(range[0] > 0 && range[0] <= range[1]))

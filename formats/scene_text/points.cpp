@@ -29,7 +29,7 @@ void Reader::read_points(const Params& p, DraftGeometry& g) {
   const Params file = p.at("points");
   TinRule rule;
   rule.error_m = p.number_in("error_m", 0, 1e6, "m", 0);
-  rule.longest_m = p.number_in("longest_m", 0, 1e9, "m", 0);
+  rule.longest_m = p.number_in("max_edge_m", 0, 1e9, "m", 0);
   const std::string path = input(file);
   const PointCloud cloud = of_file([&] { return read_las(path, report_); });
   const std::vector<bool> ground = chosen(p, cloud, {2});

@@ -88,7 +88,7 @@ class Reader {
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
   void read_terrain(const Params& p, DraftGeometry& g);
-  void tell_marks(const Params& file, const Raster& raster);
+  void report_marks(const Params& file, const Raster& raster);
   void read_heights(const Params& p, SourceTerrain& terrain);
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // meshes.cpp
@@ -121,7 +121,7 @@ class Reader {
     std::string heights_name() const { return projection ? projection->heights_name() : "the geoid"; }
   };
   EarthMap earth_map(int epsg, const Where& where) const;
-  void tell_projection(const EarthMap& map, int epsg, const Params& file);
+  void report_projection(const EarthMap& map, int epsg, const Params& file);
   std::string known_systems() const;
   std::function<Vec3(Vec3)> map_place(const Params& p, const std::string& system, const Params& file,
                                       bool longitude_first);

@@ -119,11 +119,11 @@ ParticleSpec read_kind(const Params& p, const char* key, bool aerosol, std::vect
 AirSpec::Aerosol read_aerosol(const Params& p, std::vector<std::string>& notes) {
   AirSpec::Aerosol a;
   a.boundary = read_kind(p, "model", true, notes);
-  const auto depth = p.find("depth_550");
+  const auto depth = p.find("optical_depth_550");
   if (depth && p.has("visibility_km"))
     throw depth->error("both a depth and a visibility are given", "drop one of the two");
   if (const auto scale = p.find("scale_height_m")) {
-    if (!depth) throw scale->error("a scale height goes with `depth_550`");
+    if (!depth) throw scale->error("a scale height goes with `optical_depth_550`");
     a.profile = AerosolProfile::exponential(depth->as_number_in(0, 100, ""), scale->as_number_in(1, 1e5, "m"));
     a.one_kind = true;
     return a;
@@ -150,11 +150,12 @@ AirSpec::Cloud read_cloud(const Params& p, std::vector<std::string>& notes) {
   c.particles = read_kind(p, "kind", false, notes);
   c.base = p.number_in("base_m", -1000, 30000, "m above sea level");
   c.top = p.number_in("top_m", c.base + 1, 40000, "m above sea level");
-  const auto depth = p.find("depth_550"), content = p.find("content_g_m3");
-  if (!depth == !content) throw p.error("a cloud has either `depth_550` or `content_g_m3`", "give one of the two");
+  const auto depth = p.find("optical_depth_550"), content = p.find("content_g_m3");
+  if (!depth == !content)
+    throw p.error("a cloud has either `optical_depth_550` or `content_g_m3`", "give one of the two");
   if (content) {
     if (c.particles.data && c.particles.data->relative)
-      throw content->error("a content of particles whose extinction is relative", "give `depth_550`");
+      throw content->error("a content of particles whose extinction is relative", "give `optical_depth_550`");
     c.content = 1e-3 * content->as_number_in(0, 100, "g/m3");
   } else {
     const std::optional<double> green = green_of(c.particles);

@@ -51,7 +51,7 @@ struct Runs {
 
 // What the text says of a run's geometry stands in place of what the file says.
 void complete(const Params& p, Tape7Block& run) {
-  const bool told = run.geometry.has_value();
+  const bool has_cards = run.geometry.has_value();
   Tape7Geometry g = run.geometry.value_or(Tape7Geometry{2, 0, 0, 0, {}, {}, {}});
   const auto given = [&](const char* key) -> std::optional<double> {
     if (p.kind() != Params::Kind::map) return std::nullopt;
@@ -62,11 +62,11 @@ void complete(const Params& p, Tape7Block& run) {
   const bool sun = run.mode == Tape7Mode::irradiance;
   const auto height = given("observer_height_m"), end = given("end_height_m"), zenith = given("zenith_deg"),
              range = given("range_m"), solar = given("solar_zenith_deg"), azimuth = given("relative_azimuth_deg");
-  if (!told && !(height && (sun ? solar : zenith) && (sun || end || range)))
-    throw Error(run.header, "the cards before this run do not tell its geometry",
+  if (!has_cards && !(height && (sun ? solar : zenith) && (sun || end || range)))
+    throw Error(run.header, "the cards before this run do not state its geometry",
                 sun ? "give observer_height_m and solar_zenith_deg beside the file"
                     : "give observer_height_m, zenith_deg, and end_height_m or range_m beside the file");
-  if (!told) g.path_type = range && !end ? 1 : end && *end >= kTopOfAir ? 3 : 2;
+  if (!has_cards) g.path_type = range && !end ? 1 : end && *end >= kTopOfAir ? 3 : 2;
   if (height) g.observer_height = *height;
   if (end) g.end_height = *end;
   if (zenith) g.zenith = *zenith;
@@ -176,7 +176,7 @@ void read_libradtran_sky(const Params& p, const std::string& path, TabledAirSpec
     sky.alike[SightAxis::observer_height] = p.number_in("observer_height_m", -1000, 1e6, "m above sea level");
   sky.alike[SightAxis::solar_zenith] = run.solar_zenith;
   air.notes.push_back("atmosphere: " + path + ": the sky at one altitude, and " +
-                      (has_irradiance(sky) ? "the Sun there" : "no Sun (edir was not asked for)"));
+                      (has_irradiance(sky) ? "the Sun there" : "no Sun (without edir)"));
   take(air.sky, std::move(sky), "the sky", p);
 }
 
@@ -186,7 +186,7 @@ void read_four_curve_air(const Params& p, const std::string& path, TabledAirSpec
   std::vector<std::string> names;
   for (const FourCurve& c : all) names.push_back(c.name);
   const FourCurve& c = all[all.size() == 1 && !p.has("condition") ? 0 : p.at("condition").as_choice(names)];
-  SightTable sights{four_curve_paths(c, p.number_in("longest_m", 1, 1e6, "m")),
+  SightTable sights{four_curve_paths(c, p.number_in("max_range_m", 1, 1e6, "m")),
                     {SightAxis::solar_zenith, SightAxis::range},
                     {},
                     0,
@@ -214,7 +214,7 @@ void read_entry(const Params& p, TabledAirSpec& air, Runs& runs) {
   if (!file_exists(path)) throw file.error("there is no file '" + path + "'");
   if (map && p.has("input")) return read_libradtran_sky(p, path, air);
   if (!ends_with_any(path, {".h5", ".hdf", ".hdf5"})) return read_tape7_runs(p, file, path, runs);
-  if (!map) throw file.error("how far paths go does not stand in a FourCurve file", "{file: ..., longest_m: N}");
+  if (!map) throw file.error("how far paths go does not stand in a FourCurve file", "{file: ..., max_range_m: N}");
   read_four_curve_air(p, path, air);
 }
 
@@ -284,8 +284,8 @@ std::shared_ptr<const TabledAirSpec> read_tabled_air(const Params& p) {
     throw list.error("the runs of sunlight have no irradiance (SOL_TR)", "runs of mode IEMSCT 3");
   if (!air->sun && air->sky && has_irradiance(*air->sky)) air->sun = air->sky;
   if (!air->sights && !air->sky && !air->sun) throw list.error("no table is given");
-  air->within_angle = p.number_in("within_deg", 0, 180, "degrees", 0.5) * kDegree;
-  air->within_height = p.number_in("within_m", 0, 1e5, "m", 100);
+  air->within_angle = p.number_in("angle_tolerance_deg", 0, 180, "degrees", 0.5) * kDegree;
+  air->within_height = p.number_in("height_tolerance_m", 0, 1e5, "m", 100);
   if (p.has("scene_height_m")) air->scene_height = p.number_in("scene_height_m", -1000, 20000, "m above sea level");
   if (const auto [low, high] = air->covered_um(); !(low < high))
     throw list.error(

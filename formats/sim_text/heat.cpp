@@ -41,10 +41,11 @@ void read_what_is_kept(const Params& heat, HeatRequest& out) {
     out.keep_operator = true;
     out.save_every = heat.number_in("save_every_s", 0, 86400, "s", out.save_every);
   }
-  if (const auto least = heat.find("leave_out_k")) {
+  if (const auto least = heat.find("influence_cutoff_k")) {
     out.leave_out = least->as_number_in(0, 10, "K");
     if (out.leave_out > 0 && out.keep_operator)
-      throw least->error("paths of all elements are kept, and some are to be left out", "drop 'leave_out_k' or 'keep'");
+      throw least->error("paths of all elements are kept, and some are to be left out",
+                         "drop 'influence_cutoff_k' or 'keep'");
   }
   if (const auto probes = heat.find("probes"))
     for (const std::string& name : probes->keys()) {
@@ -60,8 +61,9 @@ void read_lateral(const Params& heat, HeatRequest& out) {
   if (!lateral) return;
   out.spec.lateral = lateral->as_bool();
   if (!out.spec.lateral) return;
-  for (const auto& [given, name] :
-       {std::pair{out.spec.audit > 0, "audit"}, {out.final_gather, "final_gather"}, {out.leave_out > 0, "leave_out_k"}})
+  for (const auto& [given, name] : {std::pair{out.spec.audit > 0, "random_walks"},
+                                    {out.final_gather, "final_gather"},
+                                    {out.leave_out > 0, "influence_cutoff_k"}})
     if (given)
       throw lateral->error(std::string("conduction along the surface is not known to '") + name + "'",
                            "drop one of them");
@@ -72,7 +74,7 @@ void read_points(const Params& heat, HeatRequest& out) {
   if (!gather) return;
   out.final_gather = gather->as_bool();
   if (out.final_gather && !out.spec.periodic)
-    throw gather->error("points are told apart from their elements in a span that repeats alone",
+    throw gather->error("points differ from their elements in a span that repeats alone",
                         "'repeats: true', or no final_gather");
 }
 
@@ -98,7 +100,7 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   if (const auto by = heat->find("elements_by")) s.cut_by_sun = by->as_choice({"sun", "area"}) == 0;
   s.paths = static_cast<uint32_t>(heat->integer("paths", HeatSpec::kBlocks, 1 << 16, 64));
   s.paths = (s.paths + HeatSpec::kLeastPaths - 1) / HeatSpec::kLeastPaths * HeatSpec::kLeastPaths;
-  if (const auto target = heat->find("target_k")) {
+  if (const auto target = heat->find("target_error_k")) {
     if (heat->find("paths"))
       throw target->error("paths are given, and are to be chosen for a target", "drop one of them");
     s.target = target->as_number_in(1e-3, 10, "K");
@@ -106,10 +108,10 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   s.step = heat->number_in("step_s", 1, 3600, "s", 600);
   s.tolerance = heat->number_in("tolerance_k", 1e-7, 1, "K", 0.01);
   s.ground_albedo = heat->number_in("ground_albedo", 0, 1, "", 0.2);
-  s.audit = static_cast<size_t>(heat->integer("audit", 0, 100'000'000, 0));
+  s.audit = static_cast<size_t>(heat->integer("random_walks", 0, 100'000'000, 0));
   if (s.audit == 1)
-    throw heat->at("audit").error("one probe has no error", "two at least, thousands for tenths of a kelvin");
-  s.intervals = static_cast<size_t>(heat->integer("intervals", 1, 1000, static_cast<long long>(s.intervals)));
+    throw heat->at("random_walks").error("one probe has no error", "two at least, thousands for tenths of a kelvin");
+  s.intervals = static_cast<size_t>(heat->integer("geometry_intervals", 1, 1000, static_cast<long long>(s.intervals)));
   s.seed = sim.pipeline.seed;
   read_what_is_kept(*heat, out);
   const auto from = heat->find("from"), to = heat->find("to");

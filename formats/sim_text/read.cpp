@@ -118,8 +118,8 @@ Simulation read_simulation_tree(const Params& root, const std::string& path, con
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 0, 1'000'000, 0));
   sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 0, 10'000'000, 0));
-  sim.pipeline.refracted_sources = root.boolean("light_through_refraction", true);
-  if (!root.boolean("guide_to_gloss", true)) sim.pipeline.gloss_photons = 0;
+  sim.pipeline.refracted_sources = root.boolean("manifold_nee", true);
+  if (!root.boolean("caustic_guiding", true)) sim.pipeline.gloss_photons = 0;
   std::vector<AskedCurve> asked;
   sim.sources = read_sources(root, asked);
   if (const auto p = root.find("periodic")) {

@@ -25,9 +25,9 @@ std::string file_of(const Params& p) {
   return path;
 }
 
-CurveOptions telling() {
+CurveOptions with_warnings() {
   CurveOptions options;
-  options.tell = [](const std::string& path, const std::string& what) { warn(path + ": " + what); };
+  options.on_warning = [](const std::string& path, const std::string& what) { warn(path + ": " + what); };
   return options;
 }
 }  // namespace
@@ -38,7 +38,7 @@ Curve read_curve_value(const Params& p) {
   if (p.kind() == Params::Kind::map) {
     if (const auto x = p.find("wavelength_um"))
       return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
-    CurveOptions options = telling();
+    CurveOptions options = with_warnings();
     options.outside = read_outside(p);
     options.column = static_cast<int>(p.integer("column", 0, 10000, 0));
     options.scale = p.number("scale", 1);
@@ -46,7 +46,7 @@ Curve read_curve_value(const Params& p) {
   }
   const std::string text = p.as_text();
   const bool number = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
-  return number ? Curve::constant(p.as_number()) : read_curve(file_of(p), telling());
+  return number ? Curve::constant(p.as_number()) : read_curve(file_of(p), with_warnings());
 }
 
 namespace {
@@ -140,7 +140,7 @@ AtmosphereSpec read_atmosphere(const Params& p, const LightContext& context) {
   a.pressure = p.number_in("pressure_pa", 0, 200000, "Pa at sea level", a.pressure);
   if (const auto q = p.find("aerosol")) {
     AtmosphereSpec::Aerosol aerosol;
-    aerosol.depth_550 = q->number_in("depth_550", 0, 100, "");
+    aerosol.depth_550 = q->number_in("optical_depth_550", 0, 100, "");
     aerosol.angstrom = q->number_in("angstrom", -1, 4, "", aerosol.angstrom);
     aerosol.scale_height = q->number_in("scale_height_m", 1, 1e6, "m", aerosol.scale_height);
     if (const auto albedo = q->find("albedo")) {
@@ -160,14 +160,14 @@ AtmosphereSpec read_atmosphere(const Params& p, const LightContext& context) {
     for (const Params& g : gases->items()) {
       AtmosphereSpec::Gas gas;
       gas.name = g.text("name");
-      const auto by_layer = g.find("layer_depths");
+      const auto by_layer = g.find("layer_optical_depths");
       if (by_layer) {
         for (const Params& c : by_layer->items())
           gas.layers.push_back(context.positive(c, "optical depth", "vertical, of the layer"));
         if (gas.layers.size() != layers)
           throw by_layer->error(strf("%zu optical depths for %zu layers", gas.layers.size(), layers));
       } else {
-        gas.column = context.positive(g.at("column_depth"), "optical depth", "vertical, of the column");
+        gas.column = context.positive(g.at("column_optical_depth"), "optical depth", "vertical, of the column");
         gas.scale_height = g.number_in("scale_height_m", 1, 1e6, "m");
       }
       a.gases.push_back(std::move(gas));

@@ -92,12 +92,13 @@ PathTable tape7_path_table(std::span<const Tape7Block> runs, std::span<const Tap
   std::vector<PathRun> nodes;
   for (const Tape7Block& run : runs) {
     if (!run.geometry)
-      throw Error(run.header, "the cards before this run do not tell its geometry", "the cards as MODTRAN writes them");
+      throw Error(run.header, "the cards before this run do not state its geometry",
+                  "the cards as MODTRAN writes them");
     check_alike(run, runs[0], axes);
     PathRun node;
     for (size_t a = 0; a < axes.size(); ++a) {
       const auto value = tape7_value(run, axes[a]);
-      if (!value) throw Error(run.header, "the cards before this run do not tell its " + named[a].name);
+      if (!value) throw Error(run.header, "the cards before this run do not state its " + named[a].name);
       node.at.push_back(*value);
     }
     node.spectra = spectra_of(run);

@@ -41,7 +41,7 @@ class Reader {
   std::vector<std::string> names_;
   size_t taken_ = 0;
   VoxelData data_;
-  std::vector<bool> told_;
+  std::vector<bool> given_;
   size_t unseen_ = 0;
 };
 
@@ -169,8 +169,8 @@ void Reader::row() {
     cell += stride * static_cast<size_t>(lines_.integer(c, names_[c].c_str(), 0, data_.cells[c] - 1));
     stride *= data_.cells[c];
   }
-  if (told_[cell]) throw lines_.error(0, "this cell is told twice");
-  told_[cell] = true;
+  if (given_[cell]) throw lines_.error(0, "this cell is given twice");
+  given_[cell] = true;
   const std::string_view word = lines_.word(taken_);
   if (word == "NA" || word == "NaN" || word == "nan" || word == "-9999" || word == "-9999.0") {
     ++unseen_;
@@ -182,7 +182,7 @@ void Reader::row() {
 VoxelData Reader::run() {
   header();
   data_.density.assign(data_.size(), 0);
-  told_.assign(data_.size(), false);
+  given_.assign(data_.size(), false);
   size_t rows = 0;
   while (lines_.next()) row(), ++rows;
   const size_t silent = data_.size() - rows;

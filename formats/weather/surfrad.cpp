@@ -36,12 +36,12 @@ constexpr size_t kWindDirection = 44;
 
 // Whether the value of a word is to be used; what its flag says is counted.
 struct Flags {
-  size_t bad = 0, doubtful = 0;
+  size_t bad = 0, flagged = 0;
   bool use(const TextLines& lines, size_t word, double value) {
     const long long flag = lines.integer(word + 1, "quality flag", 0, 99);
     if (value <= kNone) return false;
     if (flag == 1) ++bad;
-    if (flag > 1) ++doubtful;
+    if (flag > 1) ++flagged;
     return flag != 1;
   }
 };
@@ -109,7 +109,7 @@ WeatherTable parse_surfrad(std::string_view text, const std::string& file, const
   set_stamps(table, ends);
   table.notes.push_back(strf("times are UTC; values are means of the %g min that end at the stamp", table.step / 60));
   if (flags.bad) table.notes.push_back(strf("%zu values flagged as impossible (1) are taken as missing", flags.bad));
-  if (flags.doubtful) table.notes.push_back(strf("%zu values flagged as doubtful (above 1) are used", flags.doubtful));
+  if (flags.flagged) table.notes.push_back(strf("%zu values flagged as uncertain (above 1) are used", flags.flagged));
   settle_longitude(table, zeniths);
   return table;
 }

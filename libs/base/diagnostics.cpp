@@ -93,9 +93,10 @@ constexpr DiagnosticKind kKinds[] = {
     {Dr::bins, kWarning, "bands miss their spectral_error",
      "leave out `spectral_error: 0`, or reduce spectral_step_um"},
     // Temperatures.
-    {Dr::heat_paths, kWarning, "the largest number of paths a face is too few for target_k", "raise target_k"},
-    {Dr::heat_left_out, kWarning, "elements that are left out change temperatures by more than leave_out_k",
-     "reduce leave_out_k, or set it to 0"},
+    {Dr::heat_paths, kWarning, "the largest number of paths a face is too few for target_error_k",
+     "raise target_error_k"},
+    {Dr::heat_left_out, kWarning, "elements that are left out change temperatures by more than influence_cutoff_k",
+     "reduce influence_cutoff_k, or set it to 0"},
     {Dr::heat_limit, kWarning, "the heat balance neglects something that matters here", "see the text"},
     {Dr::heat_other_span, kWarning, "a file of temperatures covers another time than the simulation",
      "find the temperatures anew, or change the times"},
@@ -107,9 +108,9 @@ constexpr DiagnosticKind kKinds[] = {
      "nothing: they get their element's temperature"},
     // Imported files.
     {Dr::import_unsupported, kWarning, "an element of an imported simulation is not supported",
-     "see the text; --account FILE.json lists every element"},
+     "see the text; --import-report FILE.json lists every element"},
     {Dr::import_more, kWarning, "more elements of an imported simulation are not supported",
-     "--account FILE.json lists every element"},
+     "--import-report FILE.json lists every element"},
     // Products.
     {Dr::no_lookup_table, kWarning, "an image gets no geometric lookup table (GLT)", "see the text"},
     {Dr::no_map, kWarning, "an image gets no map: the horizon is in view", "point the sensor down"},
@@ -124,6 +125,7 @@ constexpr DiagnosticKind kKinds[] = {
     {Dr::tile_beyond_limit, kWarning, "a tile of the scene alone takes more than the memory limit", "raise the limit"},
     {Dr::stopped, kWarning, "a signal stopped the run in good order", "resume it where a state is kept"},
     {Dr::rank_options, kWarning, "a rank was started with options that cannot be", "start all ranks alike"},
+    {Dr::renamed, kWarning, "a key or an option is given by an old name", "write the new name that the text states"},
 };
 
 struct Kept {

@@ -69,6 +69,7 @@ enum class Dr : int {
   tile_beyond_limit = 901,
   stopped = 902,
   rank_options = 903,
+  renamed = 904,
 };
 
 struct DiagnosticKind {

@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/params_document.h"
+#include "base/renamed.h"
 #include "base/required.h"
 
 namespace suite {
@@ -85,6 +86,24 @@ void need(const Params& p, const Params::Node* node, const std::string& hint = {
   throw p.error("the key '" + node->missing + "'" + (unit.empty() ? "" : " (" + unit + ")") + " is missing", hint);
 }
 
+// The entry of a key, which may have an old name of it (renamed.h); null where there is none. Error: both are given.
+const Params::Node::Entry* entry_of(const Params::Document& document, const Params::Node& node, std::string_view key) {
+  const auto named = [&](std::string_view name) {
+    const auto found = node.index.find(name);
+    return found == node.index.end() ? nullptr : &node.entries[found->second];
+  };
+  const Params::Node::Entry* entry = named(key);
+  for (const RenamedName* row : old_names_of_key(key)) {
+    const Params::Node::Entry* old = named(row->old_name);
+    if (!old) continue;
+    const Where place = document.where(old->line, old->column);
+    if (entry) throw both_given(*row, place, document.where(entry->line, entry->column));
+    if (document.text) note_renamed(*row, place);  // without a text a program wrote it: nobody can mend that
+    entry = old;
+  }
+  return entry;
+}
+
 }  // namespace
 
 std::string fault_of_name(const std::string& name) {
@@ -104,10 +123,8 @@ Params::Kind Params::kind() const {
 }
 Where Params::where() const { return document_->where(node_->line, node_->column); }
 Where Params::where(std::string_view key) const {
-  const auto found = node_->index.find(key);
-  if (found == node_->index.end()) return where();
-  const Node::Entry& entry = node_->entries[found->second];
-  return document_->where(entry.line, entry.column);
+  const Node::Entry* entry = entry_of(*document_, *node_, key);
+  return entry ? document_->where(entry->line, entry->column) : where();
 }
 const std::string& Params::file() const { return document_->file; }
 
@@ -121,18 +138,17 @@ std::optional<Params> Params::find(std::string_view key) const {
     throw error(strf("expected a map with the key '%.*s', found %s", static_cast<int>(key.size()), key.data(),
                      kind_name(node_->kind)));
   node_->asked.emplace(key);
-  const auto found = node_->index.find(key);
-  if (found == node_->index.end()) return std::nullopt;
-  const Node::Entry& entry = node_->entries[found->second];
-  entry.read = true;
-  return Params(document_, entry.value);
+  const Node::Entry* entry = entry_of(*document_, *node_, key);
+  if (!entry) return std::nullopt;
+  entry->read = true;
+  return Params(document_, entry->value);
 }
 
 bool Params::has(std::string_view key) const {
   need(*this, node_);
   if (node_->kind != Kind::map) return false;
   node_->asked.emplace(key);
-  return node_->index.find(key) != node_->index.end();
+  return entry_of(*document_, *node_, key) != nullptr;
 }
 
 std::optional<Error> Params::misspelt(std::string_view key) const {

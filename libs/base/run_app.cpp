@@ -13,6 +13,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/renamed.h"
 
 namespace suite {
 
@@ -74,10 +75,10 @@ std::shared_ptr<spdlog::logger> logger() {
   return log;
 }
 
-void remember_command_line(const std::string& name, int argc, const char* const* argv) {
+void remember_command_line(const std::string& name, std::span<const std::string> arguments) {
   g_command_line = name;
-  for (int i = 1; i < argc; ++i) {
-    const std::string a = printable(argv[i]);  // headers of results are lines of UTF-8
+  for (const std::string& argument : arguments) {
+    const std::string a = printable(argument);  // headers of results are lines of UTF-8
     const bool plain =
         !a.empty() && a.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%") ==
                           std::string::npos;
@@ -128,12 +129,15 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a failed write, which is told
   end_on_signals(info.name.c_str());
   track_inputs();
-  remember_command_line(info.name, argc, argv);
   Cli cli(info.name, info.description);
   CLI::App& app = cli.impl().app;
+  std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  remember_command_line(info.name, arguments);
   bool quiet = false;
   long long thread_count = 0;
   try {
+    arguments = with_new_options(info.name, std::move(arguments));
+    remember_command_line(info.name, arguments);
     app.set_version_flag("--version", info.name + " " + version_text());
     declare(cli);
     app.add_flag("-q,--quiet", quiet, "print errors, warnings and results, no progress");
@@ -141,7 +145,10 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
         ->type_name("N")
         ->check(CLI::Range(0, 4096));
     if (!info.footer.empty()) app.footer(info.footer);
-    app.parse(argc, argv);
+    std::vector<std::string> backwards(arguments.rbegin(), arguments.rend());  // as CLI11 takes them
+    app.parse(backwards);
+  } catch (const UsageError& e) {
+    return usage_error(info, app, e.what(), {});
   } catch (const CLI::Success& e) {
     return g_silent ? e.get_exit_code() : app.exit(e);
   } catch (const CLI::ExtrasError&) {

@@ -46,7 +46,7 @@ void RankExecutor::share_out() {
     const auto all = std::as_bytes(std::span<const Piece>(pieces_));
     bytes.assign(all.begin(), all.end());
   }
-  tell(bytes);
+  broadcast(bytes);
   pieces_.resize(bytes.size() / sizeof(Piece));
   if (!leads()) std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(pieces_)).begin());
 }

@@ -86,7 +86,7 @@ Makespan makespan_of(std::span<const TimedPiece> pieces, int ranks, int threads,
   return m;
 }
 
-double telling_seconds(double bytes, int ranks, const LinkCosts& link) {
+double broadcast_seconds(double bytes, int ranks, const LinkCosts& link) {
   return ranks < 2 ? 0 : std::ceil(std::log2(ranks)) * (link.message + bytes / link.rate);
 }
 

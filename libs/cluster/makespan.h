@@ -32,7 +32,7 @@ struct Makespan {
 // Pieces are fetched in their order. ranks, threads (of each): at least 1.
 Makespan makespan_of(std::span<const TimedPiece> pieces, int ranks, int threads, const LinkCosts& link);
 // Bytes that all ranks are told by the first.
-double telling_seconds(double bytes, int ranks, const LinkCosts& link);
+double broadcast_seconds(double bytes, int ranks, const LinkCosts& link);
 
 }  // namespace cluster
 }  // namespace suite

@@ -21,7 +21,7 @@ class RankExecutor final : public Executor {
   bool run(std::span<Round> rounds, const std::function<bool()>& stop, Progress* progress) override;
   int processes() const override { return link_.size(); }
   bool leads() const override { return link_.rank() == 0; }
-  void tell(std::vector<std::byte>& bytes) override {
+  void broadcast(std::vector<std::byte>& bytes) override {
     link_.meet();
     link_.broadcast(bytes);
   }

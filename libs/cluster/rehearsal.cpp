@@ -54,8 +54,8 @@ Rehearsal::Rehearsal(int ranks, int threads, const LinkCosts& link, std::shared_
       costs_(std::make_unique<Costs>()) {}
 Rehearsal::~Rehearsal() = default;
 
-void Rehearsal::tell(std::vector<std::byte>& bytes) {
-  found_.gather += cluster::telling_seconds(static_cast<double>(bytes.size()), ranks_, link_);
+void Rehearsal::broadcast(std::vector<std::byte>& bytes) {
+  found_.gather += cluster::broadcast_seconds(static_cast<double>(bytes.size()), ranks_, link_);
 }
 
 float& Rehearsal::per_path(const Round& round, const Block& block) {
@@ -151,8 +151,9 @@ void Rehearsal::time(std::span<const Round> rounds, std::span<const cluster::Pie
   }
   const cluster::Makespan m = cluster::makespan_of(timed, ranks_, threads_, link_);
   found_.busy += m.busy, found_.trace += m.trace;
-  found_.gather += m.whole - m.trace +
-                   cluster::telling_seconds(static_cast<double>(pieces.size() * sizeof(cluster::Piece)), ranks_, link_);
+  found_.gather +=
+      m.whole - m.trace +
+      cluster::broadcast_seconds(static_cast<double>(pieces.size() * sizeof(cluster::Piece)), ranks_, link_);
 }
 
 bool Rehearsal::run(std::span<Round> rounds, const std::function<bool()>& stop, Progress*) {

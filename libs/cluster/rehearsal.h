@@ -42,7 +42,7 @@ class Rehearsal final : public Executor {
   ~Rehearsal() override;
   bool run(std::span<Round> rounds, const std::function<bool()>& stop, Progress* progress) override;
   int processes() const override { return ranks_; }
-  void tell(std::vector<std::byte>& bytes) override;
+  void broadcast(std::vector<std::byte>& bytes) override;
   const Rehearsed& found() const { return found_; }
 
  private:

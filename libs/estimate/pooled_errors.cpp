@@ -23,7 +23,7 @@ class Rows {
   long rows() const { return static_cast<long>(errors_.size() / width_); }
   const double* row(long y) const { return &kept_[static_cast<size_t>(y % (2 * kReach + 1)) * width_]; }
   // Does it tell others anything? Whether it was changed already or not.
-  bool tells(size_t problem, const PoolInput& in) const {
+  bool is_informative(size_t problem, const PoolInput& in) const {
     return std::isfinite(errors_[problem * in.values + in.reference]);
   }
   void keep(long y) {
@@ -67,7 +67,9 @@ double weigh(const Rows& squares, const PoolInput& in, long x, long y, Neighbour
       n.square[n.count] = squares.row(v) + static_cast<size_t>(u) * in.values;
       const double square = n.square[n.count][in.reference];
       const double theirs = in.scatter[there];
-      const double w = !squares.tells(there, in) ? 0 : mine > 0 && theirs > 0 ? likeness(theirs, mine) : mine == theirs;
+      const double w = !squares.is_informative(there, in) ? 0
+                       : mine > 0 && theirs > 0           ? likeness(theirs, mine)
+                                                          : mine == theirs;
       alike += w, scatter += w * theirs, like += w * square, all += square;
       n.weight[n.count++] = w;
     }

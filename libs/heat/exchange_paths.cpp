@@ -179,7 +179,7 @@ void ExchangePaths::make_more() {
         strf("%zu faces with %zu paths each, which see things that move or come and go, in %zu intervals of rest "
              "are more paths than there can be",
              rows.faces, each, rows.intervals),
-        "2^32 at most: fewer elements or paths, or 'intervals: 1'");
+        "2^32 at most: fewer elements or paths, or 'geometry_intervals: 1'");
   ends.resize(rows.size() * each), weights.resize(rows.size() * each);
 }
 

@@ -63,8 +63,7 @@ PointHeat::PointHeat(const HeatScene& scene, const WeatherLoads& weather, const 
       paths_{1, 1, 1},
       air_(air_by_moment(weather)) {
   if (!result.periodic)
-    throw Error("points are told apart from elements in a span that repeats alone",
-                "'repeats: true', or no final_gather");
+    throw Error("points differ from elements in a span that repeats alone", "'repeats: true', or no final_gather");
   SUITE_CHECK_EQ(result.straight.size(), result.kelvin.size());
   SUITE_CHECK_EQ(result.moments, weather.moments.size());
   for (uint32_t e = 0; e < scene.elements.size(); ++e) {

@@ -17,12 +17,12 @@ struct Shown {
   bool angle;
 };
 constexpr Shown kShown[kSightAxes] = {
-    {SightAxis::view_zenith, "view zenith angle", "degrees", "within_deg", 1 / kDegree, true},
+    {SightAxis::view_zenith, "view zenith angle", "degrees", "angle_tolerance_deg", 1 / kDegree, true},
     {SightAxis::range, "range", "m", nullptr, 1, false},
-    {SightAxis::observer_height, "observer's height", "m", "within_m", 1, false},
-    {SightAxis::end_height, "height of the end", "m", "within_m", 1, false},
-    {SightAxis::solar_zenith, "solar zenith angle", "degrees", "within_deg", 1 / kDegree, true},
-    {SightAxis::relative_azimuth, "azimuth from the Sun's", "degrees", "within_deg", 1 / kDegree, true}};
+    {SightAxis::observer_height, "observer's height", "m", "height_tolerance_m", 1, false},
+    {SightAxis::end_height, "height of the end", "m", "height_tolerance_m", 1, false},
+    {SightAxis::solar_zenith, "solar zenith angle", "degrees", "angle_tolerance_deg", 1 / kDegree, true},
+    {SightAxis::relative_azimuth, "azimuth from the Sun's", "degrees", "angle_tolerance_deg", 1 / kDegree, true}};
 
 using Span = std::pair<double, double>;
 

@@ -96,7 +96,7 @@ class Checker {
       if (height < options_.sliver * edge) add("SP303", t, strf("height %.3g of its longest edge", height / edge));
       if (!mesh_.normals.empty()) against_winding(t, n);
     }
-    tell_against_winding();
+    report_against_winding();
     const size_t unused = static_cast<size_t>(std::count(used.begin(), used.end(), false));
     if (unused) add("SP309", {mesh_.file, 0, 0, {}, -1}, strf("%zu positions belong to no face", unused), unused);
   }
@@ -113,16 +113,16 @@ class Checker {
     if (of.triangles++ == 0 || deepest < of.deepest) of.deepest = deepest, of.worst = t;
   }
   // Two causes with cures of their own: each is told once, at its worst triangle.
-  void tell_against_winding() {
-    const auto tell = [&](const Against& of, const char* cause) {
+  void report_against_winding() {
+    const auto add_finding = [&](const Against& of, const char* cause) {
       if (of.triangles)
         add("SP311", of.worst,
             strf("%zu triangles %s; the worst by %.0f degrees, here", of.triangles, cause,
                  std::acos(std::max(-1.0, of.deepest)) * 180 / kPi),
             of.triangles);
     };
-    tell(turned_, "whose normals all do: the faces or their normals are turned");
-    tell(bent_, "some of whose normals do: they are bent, as is usual for leaves and low polygons");
+    add_finding(turned_, "whose normals all do: the faces or their normals are turned");
+    add_finding(bent_, "some of whose normals do: they are bent, as is usual for leaves and low polygons");
   }
 
   // Triangles on the same three places, equal or opposite way round.

@@ -61,32 +61,34 @@ Outcome work_on(DraftGeometry& g, const MeshCheck& options, bool repair) {
   return done;
 }
 
-void tell_changes(const DraftGeometry& g, const Outcome& done, Report& report) {
+void report_changes(const DraftGeometry& g, const Outcome& done, Report& report) {
   const std::string& asset = g.mesh.file;
-  const auto tell = [&](const char* code, const std::string& text) {
+  const auto add_finding = [&](const char* code, const std::string& text) {
     report.add(code, asset, {{asset, 0, 0, {}, -1}, text});
   };
   if (done.tin)
-    tell("SP322",
-         strf("a surface of %zu triangles through %zu of %zu points; the others are at most %.3g m above or "
-              "below it",
-              g.mesh.indices.size() / 3, done.tin->used, done.tin->points, done.tin->error * meters_per_unit(g)));
+    add_finding(
+        "SP322",
+        strf("a surface of %zu triangles through %zu of %zu points; the others are at most %.3g m above or "
+             "below it",
+             g.mesh.indices.size() / 3, done.tin->used, done.tin->points, done.tin->error * meters_per_unit(g)));
   const MeshRepairs& r = done.repairs;
   if (r.welded + r.dropped + r.turned)
-    tell("SP320", strf("%zu positions welded, %zu triangles dropped, %zu turned", r.welded, r.dropped, r.turned));
+    add_finding("SP320",
+                strf("%zu positions welded, %zu triangles dropped, %zu turned", r.welded, r.dropped, r.turned));
   if (g.fill_holes)
-    tell("SP321", strf("%zu holes of at most %zu edges closed with %zu triangles, %zu left open", done.filled.holes,
-                       g.fill_holes, done.filled.triangles, done.filled.left));
+    add_finding("SP321", strf("%zu holes of at most %zu edges closed with %zu triangles, %zu left open",
+                              done.filled.holes, g.fill_holes, done.filled.triangles, done.filled.left));
   if (!done.decimated) return;
   const Decimated& d = *done.decimated;
   const double share = static_cast<double>(d.after) / static_cast<double>(std::max<size_t>(1, d.before));
-  tell("SP322", strf("%zu of %zu triangles are left (%.3g); the old surface is at most %.3g m from the new one",
-                     d.after, d.before, share, d.distance * meters_per_unit(g)));
+  add_finding("SP322", strf("%zu of %zu triangles are left (%.3g); the old surface is at most %.3g m from the new one",
+                            d.after, d.before, share, d.distance * meters_per_unit(g)));
   if (d.refused)
-    tell("SP323", "thousands of triangles meet in one vertex, or the mesh is absurdly large");
+    add_finding("SP323", "thousands of triangles meet in one vertex, or the mesh is absurdly large");
   else if (g.decimate->to > 0 &&
            static_cast<double>(d.after) > std::ceil(g.decimate->to * static_cast<double>(d.before)) + 1)
-    tell("SP323", strf("%.3g of the triangles were asked for, %.3g are left", g.decimate->to, share));
+    add_finding("SP323", strf("%.3g of the triangles were asked for, %.3g are left", g.decimate->to, share));
 }
 
 }  // namespace
@@ -104,7 +106,7 @@ void check_draft_meshes(Draft& draft, const MeshCheck& options, bool repair, Rep
   });
   for (size_t g = 0; g < outcomes.size(); ++g) {
     const std::string& asset = draft.geometry[g].mesh.file;
-    tell_changes(draft.geometry[g], outcomes[g], report);
+    report_changes(draft.geometry[g], outcomes[g], report);
     for (const MeshFinding& f : outcomes[g].findings)
       for (size_t k = 0; k < f.examples.size(); ++k)
         report.add(f.code, asset, f.examples[k], k == 0 ? f.count - (f.examples.size() - 1) : 1);

@@ -55,11 +55,11 @@ Geodetic MapProjection::place(double x, double y, double height_m) const {
   return g;
 }
 
-std::string MapProjection::told() const {
+std::string MapProjection::description() const {
   std::string how;
   double accuracy = -1;
   const std::lock_guard lock(opened_->one);
-  opened_->proj.told(opened_->of, how, accuracy);
+  opened_->proj.describe(opened_->of, how, accuracy);
   if (how.empty()) return "by PROJ";
   return "by PROJ (" + printable(how) + (accuracy >= 0 ? strf(", within %g m", accuracy) : std::string()) + ")";
 }

@@ -21,7 +21,7 @@ class MapProjection {
   // threads. Error: PROJ knows no such place.
   Geodetic place(double x, double y, double height_m) const;
   // How the last place was found: PROJ's name of the transformation and its accuracy, a half sentence.
-  std::string told() const;
+  std::string description() const;
 
  private:
   struct Opened;

@@ -85,7 +85,7 @@ bool to_wgs84(void* opened, double x, double y, double& latitude_deg, double& lo
   return std::isfinite(latitude_deg) && std::isfinite(longitude_deg);
 }
 
-void told(void* opened, std::string& how, double& accuracy_m) {
+void describe(void* opened, std::string& how, double& accuracy_m) {
   auto* const all = static_cast<Opened*>(opened);
   how.clear(), accuracy_m = -1;
 #if PROJ_VERSION_MAJOR > 9 || (PROJ_VERSION_MAJOR == 9 && PROJ_VERSION_MINOR >= 1)
@@ -108,7 +108,7 @@ void close(void* opened) { delete static_cast<Opened*>(opened); }
 SUITE_PART_VERSION;
 extern "C" {
 extern const ProjCalls suite_proj_calls;
-const ProjCalls suite_proj_calls{open, to_wgs84, told, close};
+const ProjCalls suite_proj_calls{open, to_wgs84, describe, close};
 }
 
 }  // namespace suite

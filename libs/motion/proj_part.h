@@ -17,7 +17,7 @@ struct ProjCalls {
   // such place. For one thread at a time.
   bool (*to_wgs84)(void* opened, double x, double y, double& latitude_deg, double& longitude_deg);
   // How the last place was found: name and accuracy of the transformation; empty where there was none.
-  void (*told)(void* opened, std::string& how, double& accuracy_m);
+  void (*describe)(void* opened, std::string& how, double& accuracy_m);
   void (*close)(void* opened);
 };
 

@@ -35,15 +35,15 @@ Scene Baker::run() {
     } catch (const Error& e) {
       throw placed(e, draft_.times ? draft_.times->where : Where{draft_.file, 0, 0, {}, -1});
     }
-    tell_endless_media();
-    tell_shared_faces(time_of_all(scene_));
+    report_endless_media();
+    report_shared_faces(time_of_all(scene_));
   }
   return std::move(scene_);
 }
 
 Baker::Built Baker::build_mesh(const DraftGeometry& g) {
   std::vector<uint32_t> ids;
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (const SourceMesh::Run& run : g.mesh.runs) {
     if (const auto found = g.materials.find(run.material); found != g.materials.end()) {
       ids.push_back(material_id(found->second));
@@ -52,7 +52,7 @@ Baker::Built Baker::build_mesh(const DraftGeometry& g) {
     } else if (g.material.given()) {
       ids.push_back(material_id(g.material));
     } else {
-      if (told.insert(run.material).second)
+      if (reported.insert(run.material).second)
         add("SP102", {g.mesh.file, run.line, 0, {}, -1},
             run.material.empty() ? "faces without 'usemtl' in '" + g.name + "'; give the object a 'material'"
                                  : "unknown material '" + run.material +

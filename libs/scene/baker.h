@@ -65,8 +65,8 @@ class Baker {
   uint32_t schedule(const DraftSchedule& draft, const std::string& target, const Where& where);
   TimeSpan time_window();
   void unused();
-  void tell_endless_media();
-  void tell_shared_faces(double time);
+  void report_endless_media();
+  void report_shared_faces(double time);
 
   const Draft& draft_;
   Report& report_;

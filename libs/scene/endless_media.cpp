@@ -9,9 +9,9 @@ namespace suite {
 
 namespace {
 
-constexpr double kMany = 100;     // scatterings; fewer cost little
-constexpr size_t kMostTold = 64;  // surfaces without end that are looked at
-constexpr double kBeyond = 1e-9;  // m
+constexpr double kMany = 100;         // scatterings; fewer cost little
+constexpr size_t kMostReported = 64;  // surfaces without end that are looked at
+constexpr double kBeyond = 1e-9;      // m
 
 // A face without end of a primitive that is placed.
 struct Face {
@@ -38,7 +38,7 @@ class Faces {
   }
   void visit(uint32_t group, const Affine3& to_world, uint32_t override_by) {
     for (const Placement& p : scene_.groups[group].placements) {
-      if (all.size() >= kMostTold) return;
+      if (all.size() >= kMostReported) return;
       if (!leads(p)) continue;
       const Affine3 here = to_world * p.to_parent;
       const uint32_t material = override_by == kNone ? p.material_override : override_by;

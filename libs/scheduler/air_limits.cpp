@@ -8,6 +8,7 @@
 #include "scheduler/moments.h"
 #include "scheduler/scattered_once.h"
 #include "scheduler/sensor_diagnostics.h"
+#include "scheduler/techniques.h"
 
 namespace suite {
 
@@ -241,8 +242,9 @@ std::vector<Diagnostic> diagnose_air(const SourceSpecs& written, const Scene& sc
   SourceSpecs first = written;
   resolve_sources(first, scene);
   const AirSpec& air = *first.air;
+  const TechniqueFacts facts = technique_facts(scene, written, job.pipeline);
   if (air.adjacency && scene.media.empty()) {
-    if (!goes_back(job.pipeline))
+    if (!uses(Technique::adjacency, facts))
       found.push_back(
           {Dr::no_adjacency,
            "air: this estimator goes back to no place in the air: light between ground and air is that of " +

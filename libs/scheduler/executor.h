@@ -42,7 +42,7 @@ class Executor {
   virtual int processes() const { return 1; }
   virtual bool leads() const { return true; }
   // Replaces the bytes by those of the process that leads.
-  virtual void tell(std::vector<std::byte>&) {}
+  virtual void broadcast(std::vector<std::byte>&) {}
   // Whether any process says so.
   virtual bool any(bool mine) { return mine; }
 };
@@ -58,17 +58,17 @@ class LocalExecutor final : public Executor {
 };
 
 // A round as the process that leads tells it to the others of a job.
-struct ToldRound {
+struct SentRound {
   uint32_t capture = 0;  // its place among those in flight
   uint64_t stream = 0;
   Accumulators::Shape shape;
   std::vector<uint32_t> blocks;  // their numbers
   std::vector<uint32_t> to;
 };
-ToldRound told_of(uint32_t capture, const Round& round);
+SentRound sent_round(uint32_t capture, const Round& round);
 // The round as those run it who are told: nobody takes its sums there. Refers to what is told, which must outlive it.
-Round round_of(const ToldRound& told, const Pipeline& pipeline, const Sensor& sensor, const Capture& capture);
+Round round_of(const SentRound& sent, const Pipeline& pipeline, const Sensor& sensor, const Capture& capture);
 // Tells the rounds that come next, or is told them; and a number.
-void exchange(Executor& executor, std::vector<ToldRound>& rounds, uint32_t& number);
+void exchange(Executor& executor, std::vector<SentRound>& rounds, uint32_t& number);
 
 }  // namespace suite

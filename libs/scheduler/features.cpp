@@ -1,10 +1,10 @@
 #include "scheduler/features.h"
 
-#include <algorithm>
 #include <set>
 
 #include "base/error.h"
 #include "light/light_rows.h"
+#include "scheduler/techniques.h"
 
 namespace suite {
 
@@ -34,18 +34,9 @@ std::vector<Feature> all_features() {
        "Thermal emission. The blackbody radiance of a material is tabulated only when its temperature was loaded, "
        "which it is when it shows in some spectral window (--explain temperatures)."}};
   for (const LightRow* row : light_keys()) all.push_back({row->key(), row->uses});
-  all.insert(all.end(), {{"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
-                         {"adjacency",
-                          "Paths that go back to places in real air, for shadows in it and light of single places. "
-                          "Without, or without air, kernels are made that know nothing of it."},
-                         {"refracted light",
-                          "Sun, moon and lamps asked for through smooth interfaces (water, panes, lenses) from every "
-                          "node. Where no material passes light smoothly nothing of it is made, and it costs nothing."},
-                         {"gloss guide",
-                          "Photons of sun, moon and lamps that glossy surfaces throw on others, and continuations of "
-                          "paths that are drawn to where they come from. Where no material has a narrow lobe, or none "
-                          "of the light lands, no photon is kept, and paths cost what they did without."},
-                         {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
+  all.push_back({"atmosphere", "Layers of air that dim and scatter along every segment of a path."});
+  for (const TechniqueRow& row : technique_rows()) all.push_back({row.name, row.text});
+  all.insert(all.end(), {{"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
                          {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
                          {"bands", "Spectral bins are carried only where a band of the state responds."}});
   return all;
@@ -69,50 +60,12 @@ void add_lights(const SourceSpecs& sources, std::vector<FeatureUse>& to) {
   }
 }
 
-FeatureUse adjacency(const Scene& scene, const AirSpec* air, const PipelineOptions& options) {
-  const char* missing = !air                                        ? "no real air in the simulation"
-                        : air->scattering != AirScattering::diffuse ? "the air has no field over an even ground"
-                        : !air->adjacency                           ? "`adjacency: false`"
-                        : !scene.media.empty()                      ? "media fill the scene"
-                        : options.method == Method::paper           ? "the paper's estimator"
-                        : !goes_back(options)                       ? "lights are not asked"
-                                                                    : nullptr;
-  return {"adjacency", !missing, missing ? missing : "in the air of the simulation"};
-}
-
-FeatureUse refraction(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options) {
-  const auto smooth = std::count_if(scene.materials.begin(), scene.materials.end(),
-                                    [](const Material& m) { return m.surface.model == "dielectric"; });
-  const bool small = std::any_of(sources.lights.begin(), sources.lights.end(), [](const LightSpecPtr& light) {
-    return light->in_scene() || !light->hardly_met(1).empty();
-  });
-  const char* missing = smooth == 0                       ? "no material passes light smoothly"
-                        : !small                          ? "no sun, moon or lamp in the simulation"
-                        : options.method == Method::paper ? "the paper's estimator"
-                        : !options.explicit_sources       ? "lights are not asked"
-                        : !options.refracted_sources      ? "`light_through_refraction: false`"
-                                                          : nullptr;
-  return {"refracted light", !missing,
-          missing ? missing : strf("%zu smooth material%s", static_cast<size_t>(smooth), smooth == 1 ? "" : "s")};
-}
-
-// Whether it is glossy enough to matter photons find out, which are sent when a state is begun.
-FeatureUse gloss(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options) {
-  const auto other = std::count_if(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
-    return !m.surface.model.empty() && m.surface.model != "lambert" && m.surface.model != "dielectric";
-  });
-  const bool small = std::any_of(sources.lights.begin(), sources.lights.end(), [](const LightSpecPtr& light) {
-    return light->in_scene() || !light->hardly_met(1).empty();
-  });
-  const char* missing = other == 0                        ? "all materials are matte or smooth interfaces"
-                        : !small                          ? "no sun, moon or lamp in the simulation"
-                        : options.method == Method::paper ? "the paper's estimator"
-                        : !options.explicit_sources       ? "lights are not asked"
-                        : options.gloss_photons == 0      ? "`guide_to_gloss: false`"
-                        : !scene.media.empty() && refraction(scene, sources, options).used
-                            ? "paths in media behind refracting surfaces have guides of their own"
-                            : nullptr;
-  return {"gloss guide", !missing, missing ? missing : strf("%zu materials may be glossy", static_cast<size_t>(other))};
+// One entry a technique: why it is left out, or all that it needs.
+void add_techniques(const TechniqueFacts& facts, std::vector<FeatureUse>& to) {
+  for (const TechniqueRow& row : technique_rows()) {
+    const TechniqueCondition* missing = unmet(row, facts);
+    to.push_back({row.name, !missing, missing ? missing->otherwise : row.conditions.front().needs});
+  }
 }
 
 }  // namespace
@@ -138,9 +91,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
                               count("emission", warm, "temperatures", "no temperature shows in any window")};
   add_lights(sources, all);
   all.push_back(source("atmosphere", sources.has_air()));
-  all.push_back(adjacency(scene, sources.air.get(), options));
-  all.push_back(refraction(scene, sources, options));
-  all.push_back(gloss(scene, sources, options));
+  add_techniques(technique_facts(scene, sources, options), all);
   all.push_back(source("earth", sources.earth.has_value()));
   all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
   all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});
@@ -155,6 +106,8 @@ std::string text_of(const std::vector<FeatureUse>& features) {
 }
 
 std::optional<std::string> explain_use(const std::string& feature) {
+  for (const TechniqueRow& row : technique_rows())
+    if (row.name == feature) return explained(row);
   for (const Feature& f : all_features())
     if (f.name == feature) return f.name + ": " + f.text + "\n";
   return std::nullopt;

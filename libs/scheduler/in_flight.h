@@ -54,9 +54,9 @@ inline void save_all(const Batch& batch) {
 }
 
 // Rounds as they were told; refers to what was told.
-inline std::vector<Round> rounds_of(std::span<const ToldRound> told, const Batch& batch) {
+inline std::vector<Round> rounds_of(std::span<const SentRound> sent, const Batch& batch) {
   std::vector<Round> rounds;
-  for (const ToldRound& t : told) {
+  for (const SentRound& t : sent) {
     const CaptureWork& work = batch.at(t.capture)->work;
     rounds.push_back(round_of(t, work.pipeline, work.sensor, work.capture));
   }

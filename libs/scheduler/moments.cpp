@@ -105,7 +105,7 @@ std::vector<SourceSpecs> sources_at_all_times(const SourceSpecs& written, const 
   return all;
 }
 
-std::vector<std::string> tell_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
+std::vector<std::string> describe_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
   const std::map<double, Named> moments = written.dated() ? moments_of(sensors) : std::map<double, Named>{};
   if (written.sun() && written.sun()->date())
     for (const LightSpecPtr& light : written.lights)

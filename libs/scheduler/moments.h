@@ -55,7 +55,7 @@ SourceSpecs first_sources(const SourceSpecs& written, const Scene& scene, Sensor
 
 // Sentences about the sources: at the first and the last moment at which a capture sees them. Error, naming the
 // capture: a clear sky while the sun is below the horizon.
-std::vector<std::string> tell_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors);
+std::vector<std::string> describe_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors);
 
 // The capture of a sensor during which a dated Sun or Moon (over the horizon) goes furthest from where it is taken.
 struct LongExposure {

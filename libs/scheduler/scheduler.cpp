@@ -73,7 +73,7 @@ class Job {
     diagnose_before();
     if (options_.share) mine_ = blocks_of_share(sensors_, *options_.share);
     if (options_.store) begin_store(items);
-    std::vector<ToldRound> none;
+    std::vector<SentRound> none;
     exchange(executor(), none, cap_);
     for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
@@ -246,17 +246,17 @@ class Job {
   bool run_rounds(const Batch& batch) {
     std::vector<Round> rounds;
     std::vector<CapturePlanner*> of;
-    std::vector<ToldRound> told;
+    std::vector<SentRound> sent;
     const bool shared = together(batch.front()->item);
     for (uint32_t c = 0; c < batch.size(); ++c) {
       if (!batch[c]->planner) continue;
       std::optional<Round> round = batch[c]->planner->next();
       if (!round) continue;
-      if (shared) told.push_back(told_of(c, *round));
+      if (shared) sent.push_back(sent_round(c, *round));
       rounds.push_back(std::move(*round)), of.push_back(&*batch[c]->planner);
     }
-    if (shared) exchange(executor(), told, cap_);
-    if (follows(batch.front()->item)) rounds = rounds_of(told, batch);
+    if (shared) exchange(executor(), sent, cap_);
+    if (follows(batch.front()->item)) rounds = rounds_of(sent, batch);
     if (rounds.empty()) return false;
     const bool here = executor().processes() > 1 && !shared;
     report_.stopped = !(here ? local_ : executor()).run(rounds, options_.stop, progress_.get());

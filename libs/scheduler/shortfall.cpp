@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scheduler/techniques.h"
 #include "transport/lost_light.h"
 
 namespace suite {
@@ -62,7 +63,7 @@ std::vector<Diagnostic> diagnose_shortfall(const std::string& sensor, const Shor
                          "disk of the sun, lamps with a surface, rough surfaces or more paths help"});
   if (reports(s, s.truncated, Lack::kCut))
     found.push_back({Dr::truncated_paths, of(s.truncated.problems) +
-                                              "lost light of paths that were truncated at the maximum number of "
+                                              "miss light of paths that were truncated at the maximum number of "
                                               "nodes, " +
                                               share(s, s.truncated) +
                                               "; their standard errors contain it. More max_nodes help"});
@@ -97,10 +98,9 @@ namespace {
 struct SmallSources {
   std::vector<std::string> all, refracted, by_photons, unguided;
 };
-SmallSources small_sources(const SourceSpecs& sources, const PipelineOptions& options, uint32_t paths, bool repeats,
-                           bool guided) {
+SmallSources small_sources(const SourceSpecs& sources, const TechniqueFacts& facts, uint32_t paths, bool repeats) {
   // Manifold NEE connects through smooth interfaces; not by way of mirrors.
-  const bool connects = options.refracted_sources && options.method == Method::standard;
+  const bool connects = uses(Technique::manifold_nee, facts), guided = uses(Technique::caustic_guiding, facts);
   constexpr double kNever = 1e-12;
   SmallSources found;
   for (const LightSpecPtr& light : sources.lights) {
@@ -122,10 +122,7 @@ std::vector<Diagnostic> diagnose_lost_light(const Scene& scene, const SourceSpec
   if (!options.explicit_sources) return {};
   std::vector<std::string> refracting, mirrors;
   for (const uint32_t i : LostLight::refracting(scene, optics)) refracting.push_back("'" + scene.materials[i].id + "'");
-  // Where media scatter behind refracting surfaces paths have other guides.
-  const bool guided =
-      options.gloss_photons > 0 && options.method == Method::standard && (optics.media().empty() || refracting.empty());
-  const SmallSources lights = small_sources(sources, options, paths, repeats, guided);
+  const SmallSources lights = small_sources(sources, technique_facts(scene, sources, options, optics), paths, repeats);
   if (lights.all.empty()) return {};
   for (uint32_t i = 0; i < scene.materials.size(); ++i)
     if (const ScatterModel* m = optics.material(i).model; m && m->has_delta())

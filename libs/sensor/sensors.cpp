@@ -67,7 +67,8 @@ SpectralState state_for(std::span<const Band> bands, double spectral_error, doub
 SpectralState read_state(const Params& p, std::span<const Band> bands) {
   const auto step = p.find("spectral_step_um");
   return state_for(bands, read_spectral_error(p), step ? step->as_number_in(1e-6, 1000, "um") : 0,
-                   p.number_in("reference_um", 0, 10000, "um", 0), static_cast<size_t>(p.integer("knots", 1, 8, 4)));
+                   p.number_in("reference_um", 0, 10000, "um", 0),
+                   static_cast<size_t>(p.integer("hero_wavelengths", 1, 8, 4)));
 }
 
 namespace {

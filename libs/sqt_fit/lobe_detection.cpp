@@ -14,7 +14,7 @@ namespace suite::sqt {
 
 namespace {
 
-constexpr double kDoubt = 2;      // frames that change up to this much more than the stillest may code best
+constexpr double kUndecided = 2;  // frames that change up to this much more than the stillest may code best
 constexpr double kMarked = 0.85;  // another frame must cost less than this much of what half vectors do
 constexpr double kStill = 0.03;   // log2 units: what changes less has no lobe to follow
 constexpr double kLargest = 6;    // log2 units
@@ -149,7 +149,7 @@ LobeFrame detect_frame(const Function& function) {
   if (change[0] < kStill) return LobeFrame::half;
   std::vector<size_t> candidates;
   for (size_t k = 0; k < 3; ++k)
-    if (change[k] <= kDoubt * least) candidates.push_back(k);
+    if (change[k] <= kUndecided * least) candidates.push_back(k);
   if (candidates.size() == 1) return frames[candidates[0]];
   double best = 0;
   LobeFrame found = LobeFrame::half;

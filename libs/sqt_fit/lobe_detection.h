@@ -4,7 +4,7 @@
 // A tree shared by all views is cheap to code and interpolates well when log f hardly changes from view to view at a
 // fixed point of the divided sphere. That change is measured for every candidate frame (half vector, retro, direct)
 // over the same pairs of directions, drawn near the mirror direction, near the viewer and everywhere, and weighted by
-// the power that they carry. Where it leaves a doubt, the candidates are coded coarsely, and what they need for one
+// the power that they carry. Where that is undecided, the candidates are coded coarsely, and what they need for one
 // error decides.
 //
 // Rough surfaces, whose wide lobes are cut by the horizon and leave the mirror direction towards it, stand stillest in

@@ -40,7 +40,7 @@ std::unique_ptr<const TemperatureField> field_for(const TemperatureSpec& spec, c
   std::shared_ptr<const TemperatureModel> model = make_temperature_model(spec);
   if (model->needs_loads() && !loads)
     throw Error(
-        "temperature model '" + spec.model + "' must be told what heats the surface, which nothing here does",
+        "temperature model '" + spec.model + "' needs the loads of its surface, which nothing here gives",
         "give the simulation a `heat:` and a `weather:`, or the material a constant, tabulated or mapped temperature");
   return field_of(std::move(model), loads);
 }

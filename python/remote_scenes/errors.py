@@ -72,7 +72,7 @@ class ProgramError(Exception):
 
     @property
     def column(self) -> int:
-        """Column of the first error, from 1; 0 = not told."""
+        """Column of the first error, from 1; 0 = unknown."""
         return self._first.column
 
     @property

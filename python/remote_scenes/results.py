@@ -27,7 +27,7 @@ class Result:
 
     def __init__(self, folder: FileName, files: Iterable[str] | None = None) -> None:
         """files: names of those that count, when an earlier run may have left others; all unless given. What lies beside an
-        image and was made by another command line does not belong to it, and is told by a warning.
+        image and was made by another command line does not belong to it, and is reported by a warning.
         FileNotFoundError: the folder is not there.
         """
         self.folder = Path(folder)
@@ -159,7 +159,7 @@ class Result:
         return array
 
     def _of_points(self, name: str, dataset: xr.Dataset, quantity: str) -> xr.Dataset:
-        """Collectors at points have quantities and units of their own, which their table tells."""
+        """Collectors at points have quantities and units of their own, which their table states."""
         if "one column a collector" not in dataset.attrs.get("description", ""):
             return dataset
         table = self.table(name)

@@ -209,7 +209,7 @@ class Report:
 
 @dataclass(frozen=True)
 class PreparedScene:
-    """A prepared scene (.h5). `findings`: what was told when it was made; empty when it was up to date."""
+    """A prepared scene (.h5). `findings`: what was reported when it was made; empty when it was up to date."""
 
     path: Path
     findings: tuple[Finding, ...] = ()

@@ -95,7 +95,8 @@ class _Sensor(Keys):
     spectral_error: float | None = None
     spectral_step_um: float | None = None
     reference_um: float | None = None
-    knots: int | None = None
+    hero_wavelengths: int | None = None
+    knots: int | None = None  # the old name of hero_wavelengths
     time_s: float | None = None
     integration_time_s: float | None = None
 

@@ -144,10 +144,10 @@ print(json.dumps([code, time.monotonic() - start, use.ru_utime + use.ru_stime, u
 def whole_program(command):
     """-> seconds on the wall, CPU seconds, and the most memory (MB) of a process that is run to its end. Watched by a small process: a
     child's memory counts what its parent held when it was started."""
-    code, *told = json.loads(subprocess.run([sys.executable, "-c", WATCH, *command], capture_output=True, text=True, check=True).stdout)
+    code, *figures = json.loads(subprocess.run([sys.executable, "-c", WATCH, *command], capture_output=True, text=True, check=True).stdout)
     if code:
         sys.exit(f"{' '.join(command)} ends with {code}")
-    return told
+    return figures
 
 
 def run_mitsuba(folder, chosen, variant, plan, most_before):

@@ -67,7 +67,7 @@ CASES: Dict[str, Case] = {
                             "sim_nir_20.yaml", paths=64, edges=(4,), brighter=0.25),
     "furnace": Case("tests/golden/scenes/furnace", brighter=0.02),
     "slab": Case("tests/golden/scenes/slab", paths=64, brighter=0.08),
-    "slab_in_air": Case("tests/golden/scenes/slab", {"sky": "null", "atmosphere": "{aerosol: {depth_550: 0.3}}"},
+    "slab_in_air": Case("tests/golden/scenes/slab", {"sky": "null", "atmosphere": "{aerosol: {optical_depth_550: 0.3}}"},
                         paths=64, brighter=0.08),
     "forest": Case("tests/golden/scenes/forest", prepare=("python3 make_tables.py", PREP), paths=64, brighter=0.02),
 }

@@ -51,25 +51,25 @@ class Sum:
 
     def __init__(self):
         self.difference = self.radiance = self.stored = 0.0
-        self.told, self.told2 = 0.0, 0.0    # variance that the render tells, and the sum of its squares
+        self.stated, self.stated2 = 0.0, 0.0    # variance that the render states, and the sum of its squares
         self.known, self.known2 = 0.0, 0.0  # variance that the spread of the stored runs lets expect
 
     def add(self, value, error, mean, stored_error, ratio):
         """ratio: variance of one tested render over that of the stored mean, when nothing changed but the paths."""
         self.difference += value - mean
         self.radiance += abs(mean)
-        told, stored = error * error, stored_error * stored_error
+        stated, stored = error * error, stored_error * stored_error
         known = ratio * stored
-        self.told, self.told2 = self.told + told, self.told2 + told * told
+        self.stated, self.stated2 = self.stated + stated, self.stated2 + stated * stated
         self.known, self.known2 = self.known + known, self.known2 + known * known
         self.stored += stored
 
     def sigma(self):
-        return math.sqrt(max(self.told, self.known) + self.stored + (ROUNDING * self.radiance) ** 2)
+        return math.sqrt(max(self.stated, self.known) + self.stored + (ROUNDING * self.radiance) ** 2)
 
-    def degrees(self, told, known):
+    def degrees(self, stated, known):
         """F. Satterthwaite (1946), of each of the two variances; the fewer."""
-        mine = told * self.told ** 2 / self.told2 if self.told2 else math.inf
+        mine = stated * self.stated ** 2 / self.stated2 if self.stated2 else math.inf
         theirs = known * self.known ** 2 / self.known2 if self.known2 else math.inf
         return min(mine, theirs, 1000.0)  # beyond that Student is normal to a few per cent of p = 1e-8
 
@@ -91,11 +91,11 @@ def block_sums(value, error, mean, stored_error, edge, ratio):
 class Verdict:
     """Smallest probability among sums, where it is, and how many there were."""
 
-    def __init__(self, sums, told, known):
+    def __init__(self, sums, stated, known):
         self.sums, self.count = sums, len(sums)
         self.p, self.where = 1.0, None
         for key, s in sums.items():
             sigma = s.sigma()
-            p = two_sided(s.difference / sigma, s.degrees(told, known)) if sigma > 0 else float(s.difference == 0)
+            p = two_sided(s.difference / sigma, s.degrees(stated, known)) if sigma > 0 else float(s.difference == 0)
             if not p >= self.p:  # of numbers that are not finite too
                 self.p, self.where = (p if p == p else 0.0), (key, s)

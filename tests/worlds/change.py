@@ -334,13 +334,13 @@ def switches(world, rng):
     """Settings that say how, not what."""
     sim = world.sim
     wide = all(lamp["kind"] == "surface" for lamp in sim["lamps"]) and all(sim[k].get("half_angle_deg", 0) >= 2 for k in ("sun", "moon") if k in sim)
-    kind = rng.choice(["guide_to_gloss", "knots", "spectral_step", "spectral_error", "min_max"] + ["light_through_refraction"] * (2 if wide else 0))
-    if kind in ("guide_to_gloss", "light_through_refraction"):
+    kind = rng.choice(["caustic_guiding", "hero_wavelengths", "spectral_step", "spectral_error", "min_max"] + ["manifold_nee"] * (2 if wide else 0))
+    if kind in ("caustic_guiding", "manifold_nee"):
         sim[kind] = False
     for s in sim["sensors"]:
         a = s["instruments"][0]["arrays"][0] if s["kind"] == "platform" else s
-        if kind == "knots":
-            a["knots"] = rng.choice((1, 2, 8))
+        if kind == "hero_wavelengths":
+            a["hero_wavelengths"] = rng.choice((1, 2, 8))
         elif kind == "spectral_step":
             a["spectral_step_um"] = round(a["bands"][0]["fwhm_um"] / 3, 6)
         elif kind == "spectral_error":

@@ -108,7 +108,7 @@ def bytes_differ(programs, world, folder, seed, what):
     if what == "threads":
         run(render + ["-o", "b", "-j", "3"], folder)
     elif what == "memory":
-        run(render + ["-o", "b", "-j", "1", "--memory", "1MiB", "--kit-memory", "1MiB"], folder)
+        run(render + ["-o", "b", "-j", "1", "--memory", "1MiB", "--cache-memory", "1MiB"], folder)
     elif what == "parts":
         for k in (1, 2):
             run(render + ["-o", f"p{k}", "-j", "1", "--part", f"{k}/2", "--state"], folder)

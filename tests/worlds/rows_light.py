@@ -8,9 +8,9 @@ def air_none(d):
 def layered(d):
     spec = {"heights_m": [0, 1000, 5000], "temperature_k": [d.kelvin, d.kelvin] if d.furnace else [290, 270], "rayleigh": not d.furnace and d.chance(0.5)}
     if not d.furnace and d.chance(0.6):  # quick layers scatter the sun alone: what else they scatter is lost (SIM's FORMAT.md)
-        spec["aerosol"] = {"depth_550": d.u(0.05, 0.8), "scale_height_m": d.one(500, 2000), "albedo": d.u(0.8, 1)}
+        spec["aerosol"] = {"optical_depth_550": d.u(0.05, 0.8), "scale_height_m": d.one(500, 2000), "albedo": d.u(0.8, 1)}
     if d.chance(0.5):
-        spec["gases"] = [{"name": "gas", "column_depth": d.u(0.05, 1), "scale_height_m": 1500}]
+        spec["gases"] = [{"name": "gas", "column_optical_depth": d.u(0.05, 1), "scale_height_m": 1500}]
     d.world.sim["atmosphere"] = spec
 
 

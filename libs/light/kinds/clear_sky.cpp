@@ -90,7 +90,7 @@ void check(const ClearSkySpec& s, Dir sun) {
   in("pressure", s.pressure, 1000, 120000);
   in("water_cm", s.water_cm, 0, 10);
   in("ozone_cm", s.ozone_cm, 0, 1);
-  in("aerosol_depth_500", s.aerosol_depth_500, 0, 2);
+  in("aerosol_optical_depth_500", s.aerosol_depth_500, 0, 2);
   in("angstrom", s.angstrom, -1, 4);
   in("albedo_400", s.albedo_400, 0, 1);
   in("asymmetry", s.asymmetry, 0, 0.95);
@@ -189,7 +189,7 @@ LightSpecPtr read_clear(const Params& p, const LightContext&) {
   c.pressure = p.number_in("pressure_pa", 1000, 120000, "Pa", c.pressure);
   c.water_cm = p.number_in("water_cm", 0, 10, "cm", c.water_cm);
   c.ozone_cm = p.number_in("ozone_cm", 0, 1, "atm-cm", c.ozone_cm);
-  c.aerosol_depth_500 = p.number_in("aerosol_depth_500", 0, 2, "", c.aerosol_depth_500);
+  c.aerosol_depth_500 = p.number_in("aerosol_optical_depth_500", 0, 2, "", c.aerosol_depth_500);
   c.angstrom = p.number_in("angstrom", -1, 4, "", c.angstrom);
   c.albedo_400 = p.number_in("albedo_400", 0, 1, "", c.albedo_400);
   c.asymmetry = p.number_in("asymmetry", 0, 0.95, "", c.asymmetry);

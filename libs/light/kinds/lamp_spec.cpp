@@ -102,7 +102,7 @@ Curve of_a_candela(const Curve& spectrum, const Params& p) {
 // Places, axis and intensity of points of either kind, and the cone of spots.
 LightSpecPtr read_points(LampSpec::Kind kind, const Params& p, const LightContext& context) {
   LampSpec lamp = named_lamp(kind, p, context);
-  lamp.ride = p.text("ride", "");
+  lamp.ride = p.text("attached_to", "");
   const auto one = p.find("position_m");
   const auto many = p.find("positions_m");
   if (!one == !many) throw p.error("a lamp has either position_m or positions_m");

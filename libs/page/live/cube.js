@@ -189,14 +189,14 @@ function showLegend(ranges, bands) {
       context.fillStyle = `rgb(${c.map(Math.round).join(',')})`;
       context.fillRect(x, single ? 0 : 12 * k, 1, single ? 14 : 12);
     }
-  const told = state.each && !single ? ranges : [ranges[0]];
+  const ranged = state.each && !single ? ranges : [ranges[0]];
   ui.barText.textContent = '';
   const span = text => ui.barText.append(make('span', {}, text));
   const ends = ([low, high]) => { const step = (high - low) / 200 || 1; return [tickText(low, step), tickText(high, step)]; };
-  if (told.length === 1) {
-    const [low, high] = ends(told[0]), what = toKelvin() ? 'brightness temperature at the band\'s middle, K' : `${one.quantity}${one.unit ? ', ' + one.unit : ''}`;
+  if (ranged.length === 1) {
+    const [low, high] = ends(ranged[0]), what = toKelvin() ? 'brightness temperature at the band\'s middle, K' : `${one.quantity}${one.unit ? ', ' + one.unit : ''}`;
     span(low), span(what), span(high);
-  } else span(told.map((range, k) => `${one.bands[bands[k]].name}: ${ends(range).join(' to ')}`).join('; ') + ' ' + one.unit);
+  } else span(ranged.map((range, k) => `${one.bands[bands[k]].name}: ${ends(range).join(' to ')}`).join('; ') + ' ' + one.unit);
 }
 
 function key(colour, text, extra) {
@@ -266,13 +266,13 @@ function hover(event) {
   const at = pixelAt(event), one = image();
   if (!at) return;
   const bands = state.mode === 'rgb' ? state.rgb : [state.band];
-  const told = bands.map(b => {
+  const values = bands.map(b => {
     const list = valuesOf(b);
     const kelvin = toKelvin() && list ? ` (${shown(kelvinOf(one, b, list[at.index]), 5)} K)` : '';
     return `${one.bands[b].name} ${list ? shown(list[at.index]) : '...'} +- ${shown(numberAt(`i${state.image}.e${b}`, at.index), 2)}${kelvin}`;
   });
   const place = placeText(at.index);
-  ui.readout.textContent = `column ${at.column * one.step}, row ${at.row * one.step}: ${told.join(', ')} ${one.unit}${place ? '\n' + place : ''}`;
+  ui.readout.textContent = `column ${at.column * one.step}, row ${at.row * one.step}: ${values.join(', ')} ${one.unit}${place ? '\n' + place : ''}`;
 }
 
 function pick(event) {

@@ -135,7 +135,7 @@ function choose(x, y) {
       zenith: Math.acos(middle[2]) * 180 / Math.PI, azimuth: Math.atan2(middle[1], middle[0]) * 180 / Math.PI};
   }
   const c = state.cell;
-  ui.told.textContent = c ? `cell of order ${c.order}: ${shown(c.value)} 1/sr; a draw lands in it with ${shown(100 * c.mass, 3)} %; ` +
+  ui.picked.textContent = c ? `cell of order ${c.order}: ${shown(c.value)} 1/sr; a draw lands in it with ${shown(100 * c.mass, 3)} %; ` +
     `zenith ${shown(c.zenith)}, azimuth ${shown(c.azimuth)} degrees` : 'no cell there';
   draw();
 }
@@ -263,7 +263,7 @@ function begin() {
   for (const [key, text] of [['log', 'logarithm of the value'], ['root', 'its cube root'], ['linear', 'the value'], ['sphere', 'none: the sphere of directions']]) option(ui.scale, key, text);
   ui.edges = make('input', {type: 'checkbox', id: 'edges', checked: true, onchange: () => { state.edges = ui.edges.checked; draw(); }});
   ui.facts = make('div', {id: 'facts'});
-  ui.told = make('div', {id: 'told'}, 'Drag turns, the wheel goes nearer, a click tells of a cell.');
+  ui.picked = make('div', {id: 'picked'}, 'Drag turns, the wheel goes nearer, a click shows a cell's value.');
   ui.bar = make('canvas', {width: 280, height: 12});
   ui.barText = make('div', {className: 'row', style: 'justify-content:space-between;flex-wrap:nowrap;font-size:12px', id: 'legend'});
   ui.lacks = make('div', {className: 'said', id: 'lacks'});
@@ -272,7 +272,7 @@ function begin() {
   ui.profile = make('div', {id: 'profile'});
   document.getElementById('app').append(make('div', {className: 'panel'}, box('view direction', ui.slider, ui.viewText), box('shows', ui.channel,
     make('label', {}, 'distance from the middle', ui.scale), make('label', {}, ui.edges, ' borders of the cells'), ui.bar, ui.barText),
-    box('slice', ui.facts), box('chosen', ui.told), ui.lacks), make('div', {className: 'view'}, ui.space), make('div', {className: 'chart'}, ui.profile));
+    box('slice', ui.facts), box('chosen', ui.picked), ui.lacks), make('div', {className: 'view'}, ui.space), make('div', {className: 'chart'}, ui.profile));
   state.view = Math.floor(about.views.length / 3);
   ui.slider.value = state.view;
   listen(ui.canvas);

@@ -80,7 +80,7 @@ function choose(x, y) {
   state.picked = hit ? hit.place : null;
   if (!hit) {
     state.chosen = null;
-    ui.told.textContent = 'nothing there';
+    ui.picked.textContent = 'nothing there';
     return draw();
   }
   const [override, tag, number] = hit.thing.keys.subarray(3 * hit.instance, 3 * hit.instance + 3);
@@ -91,7 +91,7 @@ function choose(x, y) {
   state.hit = {object: hit.thing.name, instance: number, material: material === kNone ? 'none' : about.materials[material],
     tag: tag === kNone ? 'none' : about.tags[tag], place: enu};
   const row = (name, text) => make('tr', {}, make('td', {}, name), make('td', {}, text));
-  ui.told.replaceChildren(make('table', {}, row('object', hit.thing.name), row('instance', String(number)), row('material', state.hit.material),
+  ui.picked.replaceChildren(make('table', {}, row('object', hit.thing.name), row('instance', String(number)), row('material', state.hit.material),
     row('tag', state.hit.tag), row('east, m', shown(enu[0], 8)), row('north, m', shown(enu[1], 8)), row('up, m', shown(enu[2], 8)),
     ...about.latitude === undefined ? [] : [row('place', geodeticText(enu, originOfScene()))]));
   draw();
@@ -165,7 +165,7 @@ function setSun() {
 
 function buildPanel() {
   const box = (title, ...inside) => make('fieldset', {}, make('legend', {}, title), ...inside);
-  ui.told = make('div', {id: 'told'}, 'Drag turns, Shift, the right button or two fingers shift, wheel or two fingers go nearer; click on something, double click looks at it.');
+  ui.picked = make('div', {id: 'picked'}, 'Drag turns, Shift, the right button or two fingers shift, wheel or two fingers go nearer; click on something, double click looks at it.');
   ui.colour = make('select', {id: 'colour', onchange: () => { state.byTag = ui.colour.value === 'tag'; state.chosen = null; keys(); draw(); }});
   option(ui.colour, 'material', 'a colour for each material');
   option(ui.colour, 'tag', 'a colour for each tag');
@@ -178,7 +178,7 @@ function buildPanel() {
   ui.findings = make('div', {className: 'keys', id: 'findings'});
   ui.lacks = make('div', {className: 'said', id: 'lacks'}, 'reading ...');
   const whole = () => { view.target = [0, 0, 0], view.distance = 2.4 * about.radius; draw(); };
-  return make('div', {className: 'panel'}, box('chosen', ui.told), box('view', make('button', {id: 'whole', onclick: whole}, 'all of it'), ' ', make('button', {id: 'tagged', onclick: lookAtTagged}, 'what has tags'), ui.colour, ui.keys),
+  return make('div', {className: 'panel'}, box('chosen', ui.picked), box('view', make('button', {id: 'whole', onclick: whole}, 'all of it'), ' ', make('button', {id: 'tagged', onclick: lookAtTagged}, 'what has tags'), ui.colour, ui.keys),
     box('sun, no shadows', make('label', {}, 'UTC', ui.when), make('label', {}, 'azimuth', ui.azimuth), make('label', {}, 'elevation', ui.elevation), ui.sunText),
     box('findings of the check', ui.findings), ui.lacks);
 }
@@ -266,7 +266,7 @@ function ready() {
   showFindings(end.findings);
   const triangles = painter.things.reduce((sum, t) => sum + t.indices.length / 3 * t.places.length / 12, 0);
   ui.lacks.textContent = [`${triangles} triangles drawn, ${painter.things.reduce((s, t) => s + t.places.length / 12, 0)} instances of ${painter.things.length} things. ` +
-    'Places on surfaces are good to a 65 000th of a mesh.', ...end.told, about.made].join('\n');
+    'Places on surfaces are good to a 65 000th of a mesh.', ...end.notes, about.made].join('\n');
   resize();
   requestAnimationFrame(() => requestAnimationFrame(() => { window.readyAt = performance.now(); }));
 }

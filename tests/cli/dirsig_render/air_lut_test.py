@@ -20,7 +20,7 @@ BIN, FOLDER = (pathlib.Path(p).resolve() for p in sys.argv[1:3])
 REFLECTANCE, SUN = 0.3, 40
 BANDS = "[{name: b, center_um: 0.45, fwhm_um: 0.01}, {name: r, center_um: 0.67, fwhm_um: 0.01}, {name: n, center_um: 0.87, fwhm_um: 0.01}, " \
         "{name: w, center_um: 0.94, fwhm_um: 0.01}, {name: s, center_um: 1.65, fwhm_um: 0.02}]"
-AIR = "{profile: midlatitude_summer, ground_albedo: 0.3, aerosol: {model: rural, depth_550: 0.2}}"
+AIR = "{profile: midlatitude_summer, ground_albedo: 0.3, aerosol: {model: rural, optical_depth_550: 0.2}}"
 SCENE = f"""scene: 1
 materials: {{ground: {{model: lambert, reflectance: {REFLECTANCE}}}}}
 objects: {{plane: {{plane: {{width: 0, depth: 0}}, material: ground}}}}

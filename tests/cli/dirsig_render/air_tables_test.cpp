@@ -61,7 +61,7 @@ class AirTablesOfOthers : public ProgramsTest<AirTablesOfOthers> {
 };
 
 TEST_F(AirTablesOfOthers, AreTheAirOfAPicture) {
-  const CommandResult r = look("[run.tp7], within_deg: 2", "out");
+  const CommandResult r = look("[run.tp7], angle_tolerance_deg: 2", "out");
   ASSERT_EQ(r.code, 0) << r.err;
   const double square = 1e8 / (0.55 * 0.55);  // wavenumbers squared: W/(m2 sr um) of the files' unit
   const double expected = kPath * square + 0.3 / kPi * 1800 * std::cos(40 * kDegree) * kBothWays;
@@ -95,9 +95,9 @@ TEST_F(AirTablesOfOthers, BadInputIsTold) {
   EXPECT_THAT(told("[red.tp7]"),
               AllOf(HasSubstr("sim.yaml:3:"), HasSubstr("the tables of the atmosphere reach from 0.666667 to 1 um, and "
                                                         "band 'green' of sensor 'eye'")));
-  EXPECT_THAT(
-      told("[run.tp7]", "", "[3000, 0, 0]"),
-      AllOf(HasSubstr("sim.yaml:3:"), HasSubstr("and the runs have 170 to 180 degrees"), HasSubstr("within_deg")));
+  EXPECT_THAT(told("[run.tp7]", "", "[3000, 0, 0]"),
+              AllOf(HasSubstr("sim.yaml:3:"), HasSubstr("and the runs have 170 to 180 degrees"),
+                    HasSubstr("angle_tolerance_deg")));
   EXPECT_THAT(told("[run.tp7]", "moon: {direction: {zenith_deg: 10, azimuth_deg: 0}, phase_deg: 0}\n"),
               HasSubstr("a further moon"));
 }

@@ -100,7 +100,7 @@ class Diagnostics(unittest.TestCase):
                                           ", spectral_step_um: 0.1, spectral_error: 0"))
 
     def test_of_heat(self):
-        self.expect("DR601", heat(", target_k: 0.001"), scene="roof")
+        self.expect("DR601", heat(", target_error_k: 0.001"), scene="roof")
         self.expect("DR603", heat(), scene="roof", out="found")  # media are passed by
         self.expect("DR604", heat(", paths: 8, from: 2001-07-14T07:00:00Z, to: 2001-07-15T13:00:00Z"), "--heat", "found/heat.h5", scene="roof")
         self.expect("DR605", heat())

@@ -133,7 +133,7 @@ TEST_F(Dirsig, ThermFollowsFromTheWeatherOfTheSimulation) {
 }
 
 TEST_F(Dirsig, TheAccountIsComplete) {
-  ASSERT_EQ(run("dirsig-render plane.jsim -o counted --account account.json -q").code, 0);
+  ASSERT_EQ(run("dirsig-render plane.jsim -o counted --import-report account.json -q").code, 0);
   const Params account = Params::parse_file(*folder_ / "account.json");
   const Params counts = account.at("counts");
   double sum = 0;
@@ -165,7 +165,7 @@ TEST_F(Dirsig, AFaultIsToldWhereItStands) {
 }
 
 TEST_F(Dirsig, AScenesReportPointsIntoItsFiles) {
-  const CommandResult r = run("scene-prep range.scene -o range.h5 --account range.json");
+  const CommandResult r = run("scene-prep range.scene -o range.h5 --import-report range.json");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_NE(r.out.find("materials/range.mat:5:5: mat/MATERIAL_ENTRY/DOUBLE_SIDED = FALSE"), std::string::npos) << r.out;
   const Params account = Params::parse_file(*folder_ / "range.json");

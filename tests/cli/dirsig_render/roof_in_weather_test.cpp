@@ -108,7 +108,7 @@ TEST_F(RoofInWeather, PointsNeedWhatElementsWereFoundWith) {
   EXPECT_THAT(r.err, HasSubstr("holds temperatures of elements alone, and `final_gather` asks for points"));
   const CommandResult twice = run("dirsig-render sim.yaml -o again --set heat.repeats=false");
   EXPECT_EQ(twice.code, 1);
-  EXPECT_THAT(twice.err, HasSubstr("points are told apart from their elements in a span that repeats alone"));
+  EXPECT_THAT(twice.err, HasSubstr("points differ from their elements in a span that repeats alone"));
 }
 
 // Conduction along the surface changes temperatures; what follows each element for itself does not know it.
@@ -133,12 +133,12 @@ TEST_F(RoofInWeather, WhatDoesNotMatterIsLeftOut) {
       "--set sensors.1.rows=12 --set sensors.2.columns=12 --set sensors.2.rows=12 --paths 2";
   const CommandResult r =
       run_command("cd '" + folder_.path() +
-                  "' && " SUITE_BIN_DIR "/dirsig-render sim.yaml -o out --set heat.leave_out_k=0.01" + narrow);
+                  "' && " SUITE_BIN_DIR "/dirsig-render sim.yaml -o out --set heat.influence_cutoff_k=0.01" + narrow);
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_THAT(r.err, HasSubstr("elements are left out"));
   const size_t at = r.err.find("elements are left out");
   if (at != std::string::npos) std::printf("%s\n", r.err.substr(at - 20, 220).c_str());
-  EXPECT_THAT(r.err, testing::Not(HasSubstr("of leave_out_k")));
+  EXPECT_THAT(r.err, testing::Not(HasSubstr("of influence_cutoff_k")));
   // With all elements, along the same paths, what is in view is the same to the bound; with other paths it is not.
   render("whole", narrow);
   render("other", "--set heat.paths=8" + narrow);

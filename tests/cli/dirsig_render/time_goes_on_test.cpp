@@ -35,7 +35,7 @@ std::string collectors(bool at_their_hours) {
 }
 std::string light(int hour, bool clear) {
   return strf("sun: {direction: {time_utc: \"2026-06-21T%02d:00:00Z\"}}\n%s", hour,
-              clear ? "sky: {kind: clear}\n" : "atmosphere: {aerosol: {depth_550: 0.2}}\n");
+              clear ? "sky: {kind: clear}\n" : "atmosphere: {aerosol: {optical_depth_550: 0.2}}\n");
 }
 
 class TimeGoesOn : public testing::Test {

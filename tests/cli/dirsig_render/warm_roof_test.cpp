@@ -88,7 +88,7 @@ TEST_F(WarmRoof, SlabsWithoutLoadsAreRefused) {
   ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5").code, 0);
   const CommandResult render = run("dirsig-render sim.yaml -o out -q");
   EXPECT_EQ(render.code, 1);
-  EXPECT_THAT(render.err, HasSubstr("must be told what heats the surface"));
+  EXPECT_THAT(render.err, HasSubstr("needs the loads of its surface"));
 }
 
 // A slab of haze over a dark ground; its phase function as given.

@@ -55,7 +55,7 @@ class LobePage(unittest.TestCase):
             x, y, _, _ = browser.box("#picture")
             place = browser.run("(() => { const s = shapes.at(-1); return [0, 1].map(k => s.points.reduce((sum, p) => sum + p[k], 0) / 4); })()")
             browser.click(x + place[0], y + place[1])
-            self.assertIn("a draw lands in it", browser.run("document.getElementById('told').innerText"))
+            self.assertIn("a draw lands in it", browser.run("document.getElementById('picked').innerText"))
             for scale in ("linear", "log", "sphere", "root"):
                 before = browser.run("ui.canvas.toDataURL()")
                 browser.set("#scale", scale)

@@ -15,7 +15,8 @@ const std::string kSources =
     "outside: hold}}\n"
     "sky: {radiance: 1, table: [[1, 2], [3, 4]]}\n"
     "lamps: [{kind: spot, position_m: [0, 0, 1], intensity: 1, outer_deg: 10, axis: [0, 0, -1]}]\n"
-    "atmosphere: {heights_m: [0, 1000, 5000], aerosol: {depth_550: 0.1}, gases: [{name: o3, column_depth: 0.1, "
+    "atmosphere: {heights_m: [0, 1000, 5000], aerosol: {optical_depth_550: 0.1}, gases: [{name: o3, "
+    "column_optical_depth: 0.1, "
     "scale_height_m: 8000}]}\n"
     "output: {type: uint16, scale: 0.1, files: task, preview: [pan]}\nsensors:\n";
 const std::string kBands = "bands: [{name: pan, center_um: 0.6, fwhm_um: 0.1}]";

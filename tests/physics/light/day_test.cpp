@@ -217,13 +217,13 @@ TEST(Day, Dut1TurnsTheSky) {
 TEST(Day, SentencesAndRefusals) {
   const auto at = scene();
   const auto sensors = days(true);
-  const std::vector<std::string> said = tell_sources(sources(kMorning, true), *at, sensors);
+  const std::vector<std::string> said = describe_sources(sources(kMorning, true), *at, sensors);
   ASSERT_EQ(said.size(), 4u);
   EXPECT_THAT(said[0], HasSubstr("first capture: sun at 2026-06-21T07:00:00Z"));
   EXPECT_THAT(said[2], HasSubstr("last capture: sun at 2026-06-21T15:00:00.000Z"));
   // A clear sky ends with the day.
   EXPECT_THAT(
-      message_of([&] { tell_sources(sources("2026-06-21T15:00:00Z", false), *at, sensors); }),
+      message_of([&] { describe_sources(sources("2026-06-21T15:00:00Z", false), *at, sensors); }),
       HasSubstr("a clear sky needs the sun above the horizon; at 21600 s, when '3' of sensor 'day 0' is taken"));
 }
 

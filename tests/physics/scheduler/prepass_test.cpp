@@ -385,7 +385,8 @@ TEST(Prepass, does_not_heat_by_itself) {
   JobOptions job;
   job.progress = false;
   job.prepasses = before;
-  EXPECT_THAT(message_of([&] { run_job(scene(), sources(), cameras, job); }), HasSubstr("must be told what heats"));
+  EXPECT_THAT(message_of([&] { run_job(scene(), sources(), cameras, job); }),
+              HasSubstr("needs the loads of its surface"));
 }
 
 }  // namespace

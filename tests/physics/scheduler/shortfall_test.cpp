@@ -57,7 +57,7 @@ TEST(Cavity, WhatIsCutIsInTheStandardError) {
 
 TEST(Cavity, ClosingSentence) {
   EXPECT_THAT(lines_of(diagnose_shortfall("eye", cavity(0.98, 64, 256).report.shortfalls.at(0).shortfall)),
-              testing::ElementsAre(testing::AllOf(testing::HasSubstr("sensor 'eye': 1 of 1 problems lost light"),
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("sensor 'eye': 1 of 1 problems miss light"),
                                                   testing::HasSubstr("max_nodes help [DR202]"))));
   EXPECT_THAT(diagnose_shortfall("eye", cavity(0.3, 64, 256).report.shortfalls.at(0).shortfall), testing::IsEmpty());
 }

@@ -65,7 +65,7 @@ TEST(Surroundings, GlassOnWater) {
 
 // Water whose side has no model, in air; a layer in it, which goes on beyond it below an opaque bed; matter like air.
 TEST(Surroundings, BoundariesThatShouldBend) {
-  const auto told_of = [](double index, bool surface) {
+  const auto diagnosed = [](double index, bool surface) {
     auto scene = std::make_shared<Scene>();
     scene->media = {clear("water", kWater), clear("layer", index, 1)};
     scene->materials = {interface_of("surface", kWater, 0), boundary(1), material("bed", lambert(0.3))};
@@ -83,17 +83,17 @@ TEST(Surroundings, BoundariesThatShouldBend) {
     const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
     return lines_of(diagnose_surroundings(tracer, Optics(*scene, sensor.states()[0])));
   };
-  EXPECT_THAT(told_of(kWater, false),
+  EXPECT_THAT(diagnosed(kWater, false),
               ElementsAre(AllOf(HasSubstr("'side' parts 'layer' (index 1.34)"), HasSubstr("bends nothing"),
                                 HasSubstr("dielectric"), HasSubstr("[DR302]"))));
-  EXPECT_THAT(told_of(1, false), IsEmpty());
-  EXPECT_THAT(told_of(kWater, true), IsEmpty());
-  EXPECT_THAT(told_of(kGlass, true), ElementsAre(HasSubstr("'side' parts 'layer' (index 1.5) from 'water'")));
+  EXPECT_THAT(diagnosed(1, false), IsEmpty());
+  EXPECT_THAT(diagnosed(kWater, true), IsEmpty());
+  EXPECT_THAT(diagnosed(kGlass, true), ElementsAre(HasSubstr("'side' parts 'layer' (index 1.5) from 'water'")));
 }
 
 // Dense water of a large mesh, of which places are coarse; a small one, or clear water, is met exactly.
 TEST(Surroundings, DenseMatterOfALargeObject) {
-  const auto told_of = [](double side, double absorption) {
+  const auto diagnosed = [](double side, double absorption) {
     const auto scene = scene_of(
         {mesh_of({{-side, -side, 0}, {side, -side, 0}, {side, side, 0}, {-side, side, 0}}, {0, 1, 2, 0, 2, 3}, 0)},
         {material("surface", lambert(0))});
@@ -106,16 +106,16 @@ TEST(Surroundings, DenseMatterOfALargeObject) {
     const Optics optics(*scene, sensor.states()[0]);
     return lines_of(diagnose_surroundings(tracer, optics));
   };
-  EXPECT_THAT(told_of(2e4, 3),
+  EXPECT_THAT(diagnosed(2e4, 3),
               ElementsAre(AllOf(HasSubstr("paths in 'water'"), HasSubstr("'surface'"), HasSubstr("[DR306]"))));
-  EXPECT_THAT(told_of(2e4, 1e-3), IsEmpty());
-  EXPECT_THAT(told_of(10, 3), IsEmpty());
+  EXPECT_THAT(diagnosed(2e4, 1e-3), IsEmpty());
+  EXPECT_THAT(diagnosed(10, 3), IsEmpty());
 }
 
 // A layer of higher priority around glass with a medium holds within the glass; two bodies that cut each other hold by
 // the direction; nested ones, touching ones and those of one medium do not.
 TEST(Surroundings, PrioritiesThatAreAmbiguous) {
-  const auto told_of = [](int of_layer, double low, uint32_t medium) {
+  const auto diagnosed = [](int of_layer, double low, uint32_t medium) {
     auto scene = std::make_shared<Scene>();
     scene->media = {clear("haze", 1, of_layer), clear("glass", kGlass), clear("smoke", 1)};
     scene->materials = {boundary(0), interface_of("ball", kGlass, 1), boundary(medium)};
@@ -128,14 +128,14 @@ TEST(Surroundings, PrioritiesThatAreAmbiguous) {
     const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
     return lines_of(diagnose_surroundings(tracer, Optics(*scene, sensor.states()[0])));
   };
-  EXPECT_THAT(told_of(0, 2.5, 2), IsEmpty()) << "nested";
-  EXPECT_THAT(told_of(0, 4, 2), IsEmpty()) << "touching";
-  EXPECT_THAT(told_of(0, 3.5, 0), IsEmpty()) << "one medium";
-  EXPECT_THAT(told_of(1, 3.5, 2),
+  EXPECT_THAT(diagnosed(0, 2.5, 2), IsEmpty()) << "nested";
+  EXPECT_THAT(diagnosed(0, 4, 2), IsEmpty()) << "touching";
+  EXPECT_THAT(diagnosed(0, 3.5, 0), IsEmpty()) << "one medium";
+  EXPECT_THAT(diagnosed(1, 3.5, 2),
               ElementsAre(AllOf(HasSubstr("'ball' bends light into matter of index 1.5"), HasSubstr("'haze' (index 1)"),
                                 HasSubstr("0.444 times"), HasSubstr("[DR304]"))));
-  EXPECT_THAT(told_of(0, 3.5, 2), ElementsAre(AllOf(HasSubstr("'cloud' and 'layer' overlap in part"),
-                                                    HasSubstr("'smoke' (extinction 0.1 1/m"), HasSubstr("[DR305]"))));
+  EXPECT_THAT(diagnosed(0, 3.5, 2), ElementsAre(AllOf(HasSubstr("'cloud' and 'layer' overlap in part"),
+                                                      HasSubstr("'smoke' (extinction 0.1 1/m"), HasSubstr("[DR305]"))));
 }
 
 }  // namespace

@@ -62,9 +62,9 @@ TEST(Makespan, QuestionsAreWaitedFor) {
 
 TEST(Makespan, TellingGoesByATree) {
   const LinkCosts link{0, 1, 100, 1};
-  EXPECT_EQ(telling_seconds(50, 1, link), 0);
-  EXPECT_DOUBLE_EQ(telling_seconds(50, 2, link), 1.5);
-  EXPECT_DOUBLE_EQ(telling_seconds(50, 64, link), 9);
+  EXPECT_EQ(broadcast_seconds(50, 1, link), 0);
+  EXPECT_DOUBLE_EQ(broadcast_seconds(50, 2, link), 1.5);
+  EXPECT_DOUBLE_EQ(broadcast_seconds(50, 64, link), 9);
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ TEST_F(AirTables, GeometryThatTheFileDoesNotSay) {
   std::string text = test::run_text(run);
   write("bare.tp7", text.substr(text.find("    FREQ")));
   EXPECT_THAT(told("tables: [bare.tp7]"),
-              AllOf(HasSubstr("bare.tp7:1:5: error: the cards before this run do not tell its geometry"),
+              AllOf(HasSubstr("bare.tp7:1:5: error: the cards before this run do not state its geometry"),
                     HasSubstr("give observer_height_m, zenith_deg, and end_height_m or range_m")));
   const auto air = read(
       "tables: [{file: bare.tp7, observer_height_m: 4000, zenith_deg: 170, end_height_m: 20, solar_zenith_deg: 30, "
@@ -182,14 +182,14 @@ TEST_F(AirTables, FourCurveAirIsTheSameEverywhere) {
     for (const float v : {0.1f, 1e-9f, 1e-4f, 0.02f}) values.insert(values.end(), 3, v);
   writer.put("/Conditions/clear", values, "1", 3);
   writer.close();
-  const auto air = read("tables: [{file: curves.hdf, longest_m: 5000}]");
+  const auto air = read("tables: [{file: curves.hdf, max_range_m: 5000}]");
   ASSERT_TRUE(air->sights && air->sky && air->sun);
   EXPECT_TRUE(air->sights->everywhere);
   PathSpectra sky;
   air->sky->table.at(std::array{20 * kDegree}, sky);
   EXPECT_NEAR(sky.radiance[1], 200 / kPi, 1e-4);
-  EXPECT_THAT(told("tables: [curves.hdf]"), HasSubstr("{file: ..., longest_m: N}"));
-  EXPECT_THAT(told("tables: [{file: curves.hdf, longest_m: 5000, condition: cleer}]"), HasSubstr("clear"));
+  EXPECT_THAT(told("tables: [curves.hdf]"), HasSubstr("{file: ..., max_range_m: N}"));
+  EXPECT_THAT(told("tables: [{file: curves.hdf, max_range_m: 5000, condition: cleer}]"), HasSubstr("clear"));
 }
 
 TEST_F(AirTables, FaultsAreToldWhereTheyStand) {

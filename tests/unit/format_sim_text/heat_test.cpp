@@ -55,7 +55,7 @@ TEST_F(HeatInSimulations, KeysArrive) {
   EXPECT_EQ(full.heat->span->end, 2 * 86400);
   EXPECT_TRUE(full.heat->spec.cut_by_sun);
   EXPECT_EQ(full.heat->spec.target, 0);
-  const Simulation asked = read(kWeather + "heat: {elements_by: area, target_k: 0.1}");
+  const Simulation asked = read(kWeather + "heat: {elements_by: area, target_error_k: 0.1}");
   EXPECT_FALSE(asked.heat->spec.cut_by_sun);
   EXPECT_EQ(asked.heat->spec.target, 0.1);
   EXPECT_FALSE(read("").heat);
@@ -74,16 +74,17 @@ TEST_F(HeatInSimulations, Messages) {
       {kWeather + "heat: {elements: 0}", ":4:", "elements"},
       {kWeather + "heat: {elements: 0.5}", ":4:", "whole number"},
       {kWeather + "heat: {elements_by: size}", ":4:", "sun"},
-      {kWeather + "heat: {target_k: 0}", ":4:", "target_k"},
-      {kWeather + "heat: {target_k: 0.1, paths: 64}", ":4:", "drop one of them"},
+      {kWeather + "heat: {target_error_k: 0}", ":4:", "target_error_k"},
+      {kWeather + "heat: {target_error_k: 0.1, paths: 64}", ":4:", "drop one of them"},
       {kWeather + "heat: {step_s: 0}", ":4:", "step_s"},
       {kWeather + "heat: {keep: paths}", ":4:", "keep: operator"},
       {kWeather + "heat: {save_every_s: 5}", ":4:", "save_every_s"},
-      {kWeather + "heat: {audit: 1}", ":4:", "one probe"},
+      {kWeather + "heat: {random_walks: 1}", ":4:", "one probe"},
       {kWeather + "heat: {lateral_conduction: 2}", ":4:", "lateral_conduction"},
-      {kWeather + "heat: {lateral_conduction: true, audit: 9}", ":4:", "not known to 'audit'"},
+      {kWeather + "heat: {lateral_conduction: true, random_walks: 9}", ":4:", "not known to 'random_walks'"},
       {kWeather + "heat: {lateral_conduction: true, final_gather: true}", ":4:", "not known to 'final_gather'"},
-      {kWeather + "heat: {lateral_conduction: true, leave_out_k: 0.1}", ":4:", "not known to 'leave_out_k'"},
+      {kWeather + "heat: {lateral_conduction: true, influence_cutoff_k: 0.1}",
+       ":4:", "not known to 'influence_cutoff_k'"},
       {kWeather + "heat: {ground_albedo: 1.2}", ":4:", "ground_albedo"},
       {kWeather + "heat: {from: 0}", ":4:", "give both, or none"},
       {kWeather + "heat: {from: 100, to: 0}", ":4:", "shorter than 24 steps"},

@@ -30,7 +30,8 @@ TEST(Sources, AirIsReadAsItIsWritten) {
       "atmosphere: {profile: tropical, water_kg_m2: 20, ozone_du: 250, ppm: {co2: 420}, gases: none, g_points: 8, "
       "shape: "
       "flat, scattering: single, streams: 8, scene_height_m: 1200, ground_albedo: 0.4, aerosol: {model: urban, "
-      "depth_550: 0.3}, clouds: [{kind: water, base_m: 3000, top_m: 3500, depth_550: 5, effective_radius_um: 8}]}");
+      "optical_depth_550: 0.3}, clouds: [{kind: water, base_m: 3000, top_m: 3500, optical_depth_550: 5, "
+      "effective_radius_um: 8}]}");
   ASSERT_TRUE(s.air);
   EXPECT_FALSE(s.atmosphere);
   EXPECT_NEAR(precipitable_water(s.air->profile), 20, 1e-6);
@@ -62,8 +63,8 @@ TEST(Sources, ParticlesOfAUser) {
     return read("atmosphere: {profile: tropical, " + text + "}", folder / "x.yaml").air;
   };
   const auto own =
-      air("aerosol: {optics: p.txt, depth_550: 0.3}, clouds: [{optics: p.txt, base_m: 1000, top_m: 2000, "
-          "depth_550: 4}, {optics: r.txt, base_m: 1000, top_m: 2000, depth_550: 4}]");
+      air("aerosol: {optics: p.txt, optical_depth_550: 0.3}, clouds: [{optics: p.txt, base_m: 1000, top_m: 2000, "
+          "optical_depth_550: 4}, {optics: r.txt, base_m: 1000, top_m: 2000, optical_depth_550: 4}]");
   ASSERT_TRUE(own->aerosol->boundary.data);
   const double red[] = {2};
   EXPECT_NEAR(particle_optics(own->aerosol->boundary, red).extinction(0), 0.5, 1e-9);
@@ -74,7 +75,7 @@ TEST(Sources, ParticlesOfAUser) {
   EXPECT_THAT(message("aerosol: {optics: p.txt, relative_humidity: 0.5}"), testing::HasSubstr("relative_humidity"));
   EXPECT_THAT(message("aerosol: {optics: gone.txt}"), testing::HasSubstr("no file"));
   EXPECT_THAT(message("clouds: [{optics: r.txt, base_m: 1000, top_m: 2000, content_g_m3: 1}]"),
-              testing::HasSubstr("give `depth_550`"));
+              testing::HasSubstr("give `optical_depth_550`"));
 }
 
 // The first of them, for one bin at 0.55 um.
@@ -97,15 +98,16 @@ const BadCase kBad[] = {
     {"atmosphere: {profile: tropical, ppm: {co3: 400}}", "unknown gas 'co3'"},
     {"atmosphere: {profile: tropical, water_kg_m2: -1}", "-1"},
     {"atmosphere: {profile: tropical, aerosol: {model: rurale}}", "rural"},
-    {"atmosphere: {profile: tropical, aerosol: {model: rural, depth_550: 0.1, visibility_km: 5}}", "drop one"},
-    {"atmosphere: {profile: tropical, aerosol: {model: rural, scale_height_m: 1000}}", "depth_550"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, optical_depth_550: 0.1, visibility_km: 5}}", "drop one"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, scale_height_m: 1000}}", "optical_depth_550"},
     {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 2000}]}", "content_g_m3"},
-    {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 900, depth_550: 1}]}", "900"},
+    {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 900, optical_depth_550: 1}]}", "900"},
     {"atmosphere: {profile: tropical, aerosol: {model: rural, wind_m_s: 3}}", "wind_m_s"},
     {"atmosphere: {profile: tropical, aerosol: {model: desert, relative_humidity: 0.5}}", "relative_humidity"},
-    {"atmosphere: {profile: tropical, aerosol: {model: rural, depth_550: 1, scale_height_m: 900, season: fall_winter}}",
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, optical_depth_550: 1, scale_height_m: 900, season: "
+     "fall_winter}}",
      "season"},
-    {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 2000, depth_550: 1, "
+    {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 2000, optical_depth_550: 1, "
      "effective_radius_um: 50}]}",
      "50"},
     {"atmosphere: {profile: tropical, streams: 7}", "7 streams are not even"},
@@ -144,9 +146,9 @@ const BadCase kBad[] = {
     {"atmosphere: {heights_m: [0, 10, 5]}", "not ascending"},
     {"atmosphere: {heights_m: [0]}", "2 to 201"},
     {"atmosphere: {heights_m: [0, 1000], temperature_k: [280, 270]}", "2 temperatures for 1 layers"},
-    {"atmosphere: {aerosol: {depth_550: 0.1, phase: {model: hgg}}}", "unknown"},
-    {"atmosphere: {aerosol: {depth_550: 0.1, albedo: 1.2}}", "exceeds 1"},
-    {"atmosphere: {gases: [{name: a, layer_depths: [1, 2]}]}", "2 optical depths for 17 layers"},
+    {"atmosphere: {aerosol: {optical_depth_550: 0.1, phase: {model: hgg}}}", "unknown"},
+    {"atmosphere: {aerosol: {optical_depth_550: 0.1, albedo: 1.2}}", "exceeds 1"},
+    {"atmosphere: {gases: [{name: a, layer_optical_depths: [1, 2]}]}", "2 optical depths for 17 layers"},
     {"sun: {direction: {zenith_deg: 1, azimuth_deg: 0}}\nsky: {kind: clear}\natmosphere: {}",
      "stands for the atmosphere"},
     {"earth: {height_m: 3}", "material"}};

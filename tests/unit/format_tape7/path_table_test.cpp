@@ -59,11 +59,11 @@ TEST(Tape7PathTable, Faults) {
   EXPECT_EQ(told({changed(80, 1000)}, range), "no error");
   EXPECT_THAT(told({changed(80, 1000), changed(89, 3000)}, range),
               HasSubstr("path1000.tape7:11:5: error: the view zenith angle of this run differs"));
-  EXPECT_THAT(told({changed(80, 1000)}, sun), HasSubstr("do not tell its solar zenith angle"));
+  EXPECT_THAT(told({changed(80, 1000)}, sun), HasSubstr("do not state its solar zenith angle"));
   EXPECT_THAT(told({changed(80, 1000), read_tape7(kFolder + "tape7-03")[0]}, range), HasSubstr("other wavenumbers"));
   Tape7Block no_cards = changed(80, 1000);
   no_cards.geometry.reset();
-  EXPECT_THAT(told({no_cards}, angle), HasSubstr("do not tell its geometry"));
+  EXPECT_THAT(told({no_cards}, angle), HasSubstr("do not state its geometry"));
   Tape7Block blank = changed(80, 1000);
   blank.columns[4].values[7] = NAN;  // SOL_SCAT
   EXPECT_THAT(told({blank}, angle), HasSubstr("path1000.tape7:19: error: column 'SOL_SCAT' is blank at 12007"));

@@ -72,7 +72,7 @@ TEST(AmapVox, FaultsHaveTheirLine) {
   };
   EXPECT_THAT(said("1 0 2 2.25", "2 0 2 2.25"), HasSubstr("a.vox:10:1"));
   EXPECT_THAT(said("1 0 2 2.25", "1 0 2 -2.25"), HasSubstr("a.vox:10:7"));
-  EXPECT_THAT(said("0 0 1 0 20", "0 0 0 0 20"), HasSubstr("told twice"));
+  EXPECT_THAT(said("0 0 1 0 20", "0 0 0 0 20"), HasSubstr("given twice"));
   EXPECT_THAT(said("2 1 3", "2000 1000 3000"), HasSubstr("#split into 6e+09 cells"));
   EXPECT_THAT(said("#max_corner: 12", "#max_corner: 10"), HasSubstr("does not lie beyond"));
   EXPECT_THAT(said("#split", "#splat"), HasSubstr("#split is missing above"));

@@ -66,9 +66,9 @@ TEST(SurfradDay, MissingAndFlags) {
   const Weather impossible = Surfrad{.temperature = "   -70.0 1"}.read();
   EXPECT_THAT(impossible.notes(), Contains("1 values flagged as impossible (1) are taken as missing"));
   EXPECT_TRUE(std::isnan(impossible.at(Q::air_temperature, 150)));
-  const Weather doubtful = Surfrad{.temperature = "    -8.6 2"}.read();
-  EXPECT_THAT(doubtful.notes(), Contains("1 values flagged as doubtful (above 1) are used"));
-  EXPECT_NEAR(doubtful.mean(Q::air_temperature, 120, 180), 273.15 - 8.6, 1e-9);
+  const Weather flagged = Surfrad{.temperature = "    -8.6 2"}.read();
+  EXPECT_THAT(flagged.notes(), Contains("1 values flagged as uncertain (above 1) are used"));
+  EXPECT_NEAR(flagged.mean(Q::air_temperature, 120, 180), 273.15 - 8.6, 1e-9);
 }
 
 TEST(SurfradDay, RefusesWithThePlace) {

@@ -114,7 +114,7 @@ TEST(TabledAir, NothingIsExtrapolated) {
       told(kEye, 110, to_ground(110)),
       AllOf(HasSubstr("sim.yaml:7:3: error: the tables have no run for a line of sight from (0, 0, 3000) m: its "
                       "view zenith angle is 110 degrees, and the runs have 120 to 180 degrees"),
-            HasSubstr("within_deg: 10.1")));
+            HasSubstr("angle_tolerance_deg: 10.1")));
   EXPECT_THAT(told({0, 0, 2000}, 180, 2000), HasSubstr("observer's height is 2000 m, and the runs have 3000 m"));
   EXPECT_THAT(told(kEye, 180, 2000), HasSubstr("height of the end is 1000 m, and the runs have 0 m"));
   spec.within_angle = 10.1 * kDegree;

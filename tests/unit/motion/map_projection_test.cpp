@@ -58,7 +58,7 @@ TEST_F(MapProjections, AnglesAreEastBeforeNorth) {
   const Geodetic g = map.place(-120.5, 38.25, 7);
   EXPECT_NEAR(g.latitude_deg, 38.25, 1e-4);
   EXPECT_NEAR(g.longitude_deg, -120.5, 1e-4);
-  EXPECT_THAT(map.told(), testing::StartsWith("by PROJ"));
+  EXPECT_THAT(map.description(), testing::StartsWith("by PROJ"));
 }
 
 TEST_F(MapProjections, HeightsAreToldApart) {

@@ -49,11 +49,11 @@ TEST(Features, AdjacencyIsThatOfTheEstimator) {
   PipelineOptions paper, blind;
   paper.method = Method::paper, blind.explicit_sources = false;
   EXPECT_THAT(text_of(features_of(*scene, sources, {})),
-              testing::HasSubstr("adjacency            used      in the air of the simulation\n"));
+              testing::HasSubstr("adjacency            used      an atmosphere with a profile\n"));
   EXPECT_THAT(text_of(features_of(*scene, sources, {}, paper)),
               testing::HasSubstr("adjacency            left out  the paper's estimator\n"));
   EXPECT_THAT(text_of(features_of(*scene, sources, {}, blind)),
-              testing::HasSubstr("adjacency            left out  lights are not asked\n"));
+              testing::HasSubstr("adjacency            left out  lights are not sampled\n"));
 }
 
 TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
@@ -69,15 +69,15 @@ TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
   off.refracted_sources = false, paper.method = Method::paper;
   const auto said = [](const std::shared_ptr<Scene>& s, const SourceSpecs& sources, const PipelineOptions& options) {
     for (const FeatureUse& f : features_of(*s, sources, {}, options))
-      if (f.name == "refracted light") return f.why;
+      if (f.name == "MNEE") return f.why;
     return std::string("missing");
   };
   const auto water = scene("dielectric");
   const auto grey = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
-  EXPECT_EQ(said(water, sun, {}), "1 smooth material");
-  EXPECT_EQ(said(grey, sun, {}), "no material passes light smoothly");
+  EXPECT_EQ(said(water, sun, {}), "a smooth refracting material");
+  EXPECT_EQ(said(grey, sun, {}), "no material refracts without roughness");
   EXPECT_EQ(said(water, none, {}), "no sun, moon or lamp in the simulation");
-  EXPECT_EQ(said(water, sun, off), "`light_through_refraction: false`");
+  EXPECT_EQ(said(water, sun, off), "`manifold_nee: false`");
   EXPECT_EQ(said(water, sun, paper), "the paper's estimator");
 }
 

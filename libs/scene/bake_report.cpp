@@ -10,7 +10,7 @@
 
 namespace suite {
 
-void Baker::tell_endless_media() {
+void Baker::report_endless_media() {
   for (const EndlessMedium& e : endless_media(scene_, draft_.windows)) {
     const auto surface =
         std::find_if(draft_.geometry.begin(), draft_.geometry.end(), [&](auto& g) { return g.name == e.surface; });
@@ -25,7 +25,7 @@ void Baker::tell_endless_media() {
   }
 }
 
-void Baker::tell_shared_faces(double time) {
+void Baker::report_shared_faces(double time) {
   std::set<std::array<std::string, 2>> known;  // many copies are one fault
   for (const SharedFace& f : shared_faces(scene_, time)) {
     if (!known.insert({f.one, f.other}).second) continue;

@@ -24,6 +24,6 @@ class DetectorFlags {
 
 // How many pixels of each sensor are flagged, and what the flags that occur mean. Warns of a sensor whose counts are
 // clipped in more than a hundredth of its pixels.
-void tell_quality(std::span<const SensorQuality> sensors);
+void report_quality(std::span<const SensorQuality> sensors);
 
 }  // namespace suite

@@ -44,8 +44,8 @@ const Extension* known(const std::string& name) {
 }
 
 // What is left out of materials whose base colours are taken.
-void tell_of_surfaces(const tinygltf::Model& model,
-                      const std::function<void(const char*, const std::string&, size_t)>& tell) {
+void report_surfaces(const tinygltf::Model& model,
+                     const std::function<void(const char*, const std::string&, size_t)>& add_finding) {
   size_t metals = 0, others = 0;
   for (const tinygltf::Material& m : model.materials) {
     const tinygltf::PbrMetallicRoughness& pbr = m.pbrMetallicRoughness;
@@ -53,8 +53,10 @@ void tell_of_surfaces(const tinygltf::Model& model,
     others += (pbr.metallicRoughnessTexture.index >= 0) + (m.normalTexture.index >= 0) +
               (m.occlusionTexture.index >= 0) + (m.emissiveTexture.index >= 0);
   }
-  tell("SP707", strf("%zu materials of metal: they are matte here ('materials:' names better ones)", metals), metals);
-  tell("SP705", strf("%zu textures of roughness, normals, occlusion or light: base colours are taken", others), others);
+  add_finding("SP707", strf("%zu materials of metal: they are matte here ('materials:' names better ones)", metals),
+              metals);
+  add_finding("SP705", strf("%zu textures of roughness, normals, occlusion or light: base colours are taken", others),
+              others);
 }
 
 }  // namespace
@@ -73,26 +75,29 @@ void check_extensions(const tinygltf::Model& model, const std::string& file) {
                     "write the file again without compression");
 }
 
-void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file, bool textures, Report& report) {
-  const auto tell = [&](const char* code, const std::string& what, size_t count) {
+void report_left_out(const tinygltf::Model& model, const std::string& file, bool textures, Report& report) {
+  const auto add_finding = [&](const char* code, const std::string& what, size_t count) {
     if (count) report.add(code, file, {Where{file, 0, 0, {}, -1}, what}, count);
   };
   for (const std::string& name : model.extensionsUsed) {
     const Extension* e = known(name);
     if (e && !e->fate) continue;
     const std::string short_name = printable(name).substr(0, 80);
-    tell("SP705", "extension " + short_name + ": " + (e ? e->fate : "unknown here"), 1);
+    add_finding("SP705", "extension " + short_name + ": " + (e ? e->fate : "unknown here"), 1);
   }
-  tell("SP706", strf("%zu cameras: cameras belong to the simulation", model.cameras.size()), model.cameras.size());
-  tell("SP705", strf("%zu lights: lights belong to the simulation", model.lights.size()), model.lights.size());
-  tell("SP705", strf("%zu skins: bodies stand as their meshes are stored, not bent by joints", model.skins.size()),
-       model.skins.size());
+  add_finding("SP706", strf("%zu cameras: cameras belong to the simulation", model.cameras.size()),
+              model.cameras.size());
+  add_finding("SP705", strf("%zu lights: lights belong to the simulation", model.lights.size()), model.lights.size());
+  add_finding("SP705",
+              strf("%zu skins: bodies stand as their meshes are stored, not bent by joints", model.skins.size()),
+              model.skins.size());
   if (!textures)
-    tell("SP705",
-         strf("%zu textures: display colours are no spectra, maps are ('textures: {uplift: texel}' guesses spectra)",
-              model.textures.size()),
-         model.textures.size());
-  if (textures) tell_of_surfaces(model, tell);
+    add_finding(
+        "SP705",
+        strf("%zu textures: display colours are no spectra, maps are ('textures: {uplift: texel}' guesses spectra)",
+             model.textures.size()),
+        model.textures.size());
+  if (textures) report_surfaces(model, add_finding);
   size_t morphs = 0, colours = 0, see_through = 0, shining = 0, coordinates = 0;
   for (const tinygltf::Mesh& mesh : model.meshes)
     for (const tinygltf::Primitive& p : mesh.primitives) {
@@ -103,14 +108,16 @@ void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file
     see_through += m.alphaMode != "OPAQUE" && !m.alphaMode.empty();
     shining += std::any_of(m.emissiveFactor.begin(), m.emissiveFactor.end(), [](double v) { return v > 0; });
   }
-  tell("SP705", strf("%zu primitives with morph targets: they keep their basic shape", morphs), morphs);
-  tell("SP706", strf("%zu primitives with colours of vertices: display colours are no spectra", colours), colours);
-  tell("SP706", strf("%zu primitives with a second set of texture coordinates: the first is taken", coordinates),
-       coordinates);
-  tell("SP705",
-       strf("%zu materials that are seen through: surfaces are whole, an 'opacity' map makes holes", see_through),
-       see_through);
-  tell("SP705", strf("%zu materials that shine: radiance comes from temperatures and lamps", shining), shining);
+  add_finding("SP705", strf("%zu primitives with morph targets: they keep their basic shape", morphs), morphs);
+  add_finding("SP706", strf("%zu primitives with colours of vertices: display colours are no spectra", colours),
+              colours);
+  add_finding("SP706", strf("%zu primitives with a second set of texture coordinates: the first is taken", coordinates),
+              coordinates);
+  add_finding(
+      "SP705",
+      strf("%zu materials that are seen through: surfaces are whole, an 'opacity' map makes holes", see_through),
+      see_through);
+  add_finding("SP705", strf("%zu materials that shine: radiance comes from temperatures and lamps", shining), shining);
 }
 
 }  // namespace suite::gltf

@@ -49,35 +49,35 @@ class Taker {
 
 }  // namespace
 
-ToldRound told_of(uint32_t capture, const Round& round) {
-  ToldRound told{capture, round.stream, round.shape, {}, {round.to.begin(), round.to.end()}};
+SentRound sent_round(uint32_t capture, const Round& round) {
+  SentRound sent{capture, round.stream, round.shape, {}, {round.to.begin(), round.to.end()}};
   for (const Block& b : round.blocks)
-    told.blocks.push_back(static_cast<uint32_t>(number_of(b, round.capture->columns)));
-  return told;
+    sent.blocks.push_back(static_cast<uint32_t>(number_of(b, round.capture->columns)));
+  return sent;
 }
 
-Round round_of(const ToldRound& told, const Pipeline& pipeline, const Sensor& sensor, const Capture& capture) {
+Round round_of(const SentRound& sent, const Pipeline& pipeline, const Sensor& sensor, const Capture& capture) {
   const std::vector<Block> all = blocks_of(capture);
-  Round round{&pipeline, &sensor, &capture, told.stream, {}, told.to, told.shape, nullptr, {}};
-  for (const uint32_t b : told.blocks) round.blocks.push_back(all.at(b));
+  Round round{&pipeline, &sensor, &capture, sent.stream, {}, sent.to, sent.shape, nullptr, {}};
+  for (const uint32_t b : sent.blocks) round.blocks.push_back(all.at(b));
   return round;
 }
 
-void exchange(Executor& executor, std::vector<ToldRound>& rounds, uint32_t& number) {
+void exchange(Executor& executor, std::vector<SentRound>& rounds, uint32_t& number) {
   std::vector<std::byte> bytes;
   if (executor.leads()) {
     put(bytes, number);
-    for (const ToldRound& r : rounds) {
+    for (const SentRound& r : rounds) {
       put(bytes, r.capture), put(bytes, r.stream), put(bytes, r.shape);
       put_all(bytes, r.blocks), put_all(bytes, r.to);
     }
   }
-  executor.tell(bytes);
+  executor.broadcast(bytes);
   if (executor.leads()) return;
   Taker from(bytes);
   number = from.get<uint32_t>();
   for (rounds.clear(); from.left();) {
-    ToldRound r;
+    SentRound r;
     r.capture = from.get<uint32_t>(), r.stream = from.get<uint64_t>(), r.shape = from.get<Accumulators::Shape>();
     r.blocks = from.get_all(), r.to = from.get_all();
     rounds.push_back(std::move(r));

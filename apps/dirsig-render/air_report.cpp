@@ -1,4 +1,4 @@
-#include "air_told.h"
+#include "air_report.h"
 
 #include <cmath>
 
@@ -93,7 +93,7 @@ std::string air_text(const Simulation& sim, const std::shared_ptr<const Scene>& 
   SourcesInTime in_time(sim.sources, *scene);
   const SourceSpecs& sources = in_time.at(0);
   if (!sources.air)
-    throw Error(Where{sim.path, 0, 0, {}, -1}, "the simulation has no real air to tell of",
+    throw Error(Where{sim.path, 0, 0, {}, -1}, "the simulation has no real air to report",
                 "give `atmosphere: {profile: us_standard}`");
   std::string text = profile_text(*sources.air);
   for (const auto& sensor : sim.sensors)

@@ -1,4 +1,4 @@
-#include "deck_told.h"
+#include "deck_report.h"
 
 #include <algorithm>
 #include <array>

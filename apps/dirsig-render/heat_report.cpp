@@ -1,4 +1,4 @@
-#include "heat_told.h"
+#include "heat_report.h"
 
 #include <algorithm>
 #include <cmath>

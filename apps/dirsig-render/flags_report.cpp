@@ -1,4 +1,4 @@
-#include "flags_told.h"
+#include "flags_report.h"
 
 #include "base/diagnostics.h"
 #include "base/run_app.h"
@@ -38,7 +38,7 @@ void DetectorFlags::add_to(JobReport& report) const {
   }
 }
 
-void tell_quality(std::span<const SensorQuality> sensors) {
+void report_quality(std::span<const SensorQuality> sensors) {
   QualityCounts all;
   for (const auto& [sensor, counts] : sensors) {
     note(counts.flagged ? flagged_text(sensor, counts.flagged, counts.problems, "flagged") + text_of(counts)

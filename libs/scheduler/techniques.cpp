@@ -1,0 +1,131 @@
+#include "scheduler/techniques.h"
+
+#include <algorithm>
+
+#include "transport/lost_light.h"
+
+namespace suite {
+
+namespace {
+
+using Facts = TechniqueFacts;
+
+constexpr TechniqueCondition kStandard{[](const Facts& f) { return f.options.method == Method::standard; },
+                                       "the standard method", "the paper's estimator"};
+constexpr TechniqueCondition kSampled{[](const Facts& f) { return f.options.explicit_sources; },
+                                      "next-event estimation", "lights are not sampled"};
+constexpr TechniqueCondition kSmall{[](const Facts& f) { return f.small_lights; }, "a sun, a moon or a lamp",
+                                    "no sun, moon or lamp in the simulation"};
+constexpr TechniqueCondition kSmooth{[](const Facts& f) { return f.smooth > 0; }, "a smooth refracting material",
+                                     "no material refracts without roughness"};
+constexpr TechniqueCondition kManifold{[](const Facts& f) { return f.options.refracted_sources; },
+                                       "`manifold_nee: true`", "`manifold_nee: false`"};
+constexpr TechniqueCondition kMedia{[](const Facts& f) { return f.media > 0; }, "media in the scene",
+                                    "no media in the scene"};
+
+bool behind_interfaces(const Facts& f) { return uses(Technique::manifold_nee, f); }
+
+constexpr TechniqueCondition kManifoldNee[] = {kSmooth, kSmall, kStandard, kSampled, kManifold};
+constexpr TechniqueCondition kMultiVertex[] = {
+    kMedia, {behind_interfaces, "MNEE", "no light is sampled through smooth interfaces"}};
+constexpr TechniqueCondition kSplitting[] = {
+    kMedia,
+    kStandard,
+    kSampled,
+    {[](const Facts& f) { return f.beams; }, "a sun or a moon", "no sun or moon in the simulation"},
+    {[](const Facts& f) { return f.smooth == 0; }, "no smooth refracting material",
+     "paths in media behind smooth interfaces have multi-vertex NEE"},
+    {[](const Facts& f) { return f.options.side_flights; }, "splitting switched on", "switched off"}};
+constexpr TechniqueCondition kCausticGuiding[] = {
+    {[](const Facts& f) { return f.not_matte > 0; }, "a material that is not Lambertian",
+     "all materials are Lambertian"},
+    kSmall,
+    {[](const Facts& f) { return f.rough > 0 || f.sized_lights; }, "a rough surface, or a source with a size",
+     "no path meets point sources by way of mirrors and smooth interfaces"},
+    kStandard,
+    kSampled,
+    {[](const Facts& f) { return f.options.gloss_photons > 0; }, "`caustic_guiding: true`", "`caustic_guiding: false`"},
+    {[](const Facts& f) { return f.media == 0 || !behind_interfaces(f); }, "no media together with MNEE",
+     "paths in media behind smooth interfaces have multi-vertex NEE"}};
+constexpr TechniqueCondition kAdjacency[] = {
+    {[](const Facts& f) { return f.real_air; }, "an atmosphere with a profile", "no real air in the simulation"},
+    {[](const Facts& f) { return f.field; }, "`scattering: diffuse`", "the air has no field over an even ground"},
+    {[](const Facts& f) { return f.adjacency; }, "`adjacency: true`", "`adjacency: false`"},
+    {[](const Facts& f) { return f.media == 0; }, "no media in the scene", "media fill the scene"},
+    kStandard,
+    kSampled};
+
+constexpr TechniqueRow kRows[] = {
+    {Technique::manifold_nee, "MNEE",
+     "Manifold next-event estimation: sun, moon and lamps are connected through smooth interfaces (water, panes, "
+     "lenses) from every vertex. Where no material refracts smoothly nothing of it is made, and it costs nothing.",
+     kManifoldNee},
+    {Technique::multi_vertex_nee, "multi-vertex NEE",
+     "Several scattering vertices between a vertex and a light behind smooth interfaces, sampled together where media "
+     "scatter forwards.",
+     kMultiVertex},
+    {Technique::splitting, "splitting",
+     "A second free flight towards the sun or the moon from vertices in media that scatter forwards.", kSplitting},
+    {Technique::caustic_guiding, "caustic guiding",
+     "Photon-guided sampling of caustics: photons find where narrow lobes reflect sun, moon and lamps to, and a share "
+     "of continuations is drawn there. Where no material has a narrow lobe, or no photon lands, none is kept, and "
+     "paths cost what they did without.",
+     kCausticGuiding},
+    {Technique::adjacency, "adjacency",
+     "Residual estimator over the 1-D field of real air: shadows in the air and light of single places. Without, or "
+     "without air, kernels are made that know nothing of it.",
+     kAdjacency},
+};
+
+}  // namespace
+
+std::span<const TechniqueRow> technique_rows() { return kRows; }
+
+const TechniqueRow& technique_row(Technique technique) { return kRows[static_cast<size_t>(technique)]; }
+
+const TechniqueCondition* unmet(const TechniqueRow& row, const TechniqueFacts& facts) {
+  const auto found = std::ranges::find_if(row.conditions, [&](const auto& c) { return !c.holds(facts); });
+  return found == row.conditions.end() ? nullptr : &*found;
+}
+
+std::string explained(const TechniqueRow& row) {
+  std::string text = std::string(row.name) + ": " + row.text + "\nUsed with:";
+  for (const TechniqueCondition& c : row.conditions) text += std::string("\n  ") + c.needs;
+  return text + "\n";
+}
+
+TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options) {
+  TechniqueFacts f;
+  f.options = options;
+  constexpr double kNever = 1e-12;
+  for (const LightSpecPtr& light : sources.lights) {
+    const size_t parts = light->in_scene() ? light->entries() : light->hardly_met(1).size();
+    f.small_lights = f.small_lights || parts > 0;
+    f.sized_lights = f.sized_lights || parts > light->hardly_met(kNever).size();
+    f.beams = f.beams || (!light->in_scene() && parts > 0);
+  }
+  f.media = scene.media.size() + (sources.air && sources.air->scattering == AirScattering::traced);
+  for (const Material& m : scene.materials) {
+    const std::string& model = m.surface.model;
+    f.smooth += model == "dielectric";
+    f.not_matte += !model.empty() && model != "lambert";
+    f.rough += !model.empty() && model != "lambert" && model != "dielectric" && model != "mirror";
+  }
+  f.real_air = sources.air != nullptr;
+  f.field = f.real_air && sources.air->scattering == AirScattering::diffuse;
+  f.adjacency = f.real_air && sources.air->adjacency;
+  return f;
+}
+
+TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options,
+                               const Optics& optics) {
+  TechniqueFacts f = technique_facts(scene, sources, options);
+  f.media = optics.media().size();
+  f.smooth = LostLight::refracting(scene, optics).size();
+  f.not_matte = 0;
+  for (uint32_t i = 0; i < scene.materials.size(); ++i)
+    if (const ScatterModel* m = optics.material(i).model) f.not_matte += m->diffuse() == nullptr;
+  return f;
+}
+
+}  // namespace suite

@@ -1,0 +1,62 @@
+// Techniques of light transport and the conditions under which they are used: one table. The list of parts before a run
+// and in `--dry-run`, `--explain`, and the diagnostics read it; a test holds the kernels to it
+// (tests/physics/scheduler/techniques_test.cpp).
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "light/environment.h"
+#include "scene/scene.h"
+#include "surface/optics.h"
+#include "transport/options.h"
+
+namespace suite {
+
+enum class Technique : uint8_t {
+  manifold_nee,      // next-event estimation of lights behind smooth interfaces (MNEE)
+  multi_vertex_nee,  // of lights behind media under smooth interfaces
+  splitting,         // with a light-directed scattering vertex
+  caustic_guiding,   // photon-guided sampling of caustics
+  adjacency,         // residual estimator over a 1-D field of air
+};
+
+// What the conditions look at.
+struct TechniqueFacts {
+  PipelineOptions options;
+  bool small_lights = false;  // sun, moon or lamps: what continuations hardly find
+  bool sized_lights = false;  // of them such as have a size, so that continuations may meet them
+  bool beams = false;         // sun or moon
+  size_t media = 0;
+  size_t smooth = 0, not_matte = 0, rough = 0;  // materials: Dirac refraction; not Lambertian; these with wide lobes
+  bool real_air = false, field = false, adjacency = false;  // of the air: a profile, a diffuse field, adjacency wanted
+};
+// Of the scene as it was loaded.
+TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options);
+// The same with its materials as they were baked for a spectral state.
+TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options,
+                               const Optics& optics);
+
+struct TechniqueCondition {
+  bool (*holds)(const TechniqueFacts& facts);
+  const char* needs;      // "a sun, a moon or a lamp"
+  const char* otherwise;  // why it is not used: "no sun, moon or lamp in the simulation"
+};
+struct TechniqueRow {
+  Technique technique;
+  const char* name;  // of `--explain`, of the list of parts
+  const char* text;  // what it does
+  std::span<const TechniqueCondition> conditions;
+};
+
+// All of them, in the order of the enumeration.
+std::span<const TechniqueRow> technique_rows();
+const TechniqueRow& technique_row(Technique technique);
+// The first condition that does not hold; null when the technique is used.
+const TechniqueCondition* unmet(const TechniqueRow& row, const TechniqueFacts& facts);
+inline bool uses(Technique technique, const TechniqueFacts& facts) { return !unmet(technique_row(technique), facts); }
+// What it does and what it needs.
+std::string explained(const TechniqueRow& row);
+
+}  // namespace suite
