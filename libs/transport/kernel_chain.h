@@ -13,16 +13,16 @@
 // last one, of which the way may come from another direction than s; in the mean Poisson's law, places and
 // transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
 // chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no surface.
-// What continuations of the node find of it is left out (Lane::quiet). Matter must let some light through unscattered
+// They claim it (path/claims.h). Matter must let some light through unscattered
 // (kDeepest) and be the same everywhere beside the node, or in layers: boundaries that bend nothing are passed, chains
 // are drawn from the mean of what lies on the light's way, and count with what is there.
 //
 // The sky of the air is asked for in the same way, 0 <= n, towards a direction above the water that the path's knot has
 // drawn (sky_through_water.h), where the scene's only refractor is a sheet. Light from there may come through waves in
-// several ways; the one that Newton's method finds first is asked for, unless it is much focused, and what chance finds
-// of it left out (has_asked_sky). Both lights are asked for by scatterings as well, for what comes from more than half
+// several ways; the one that Newton's method finds first is asked for, unless it is much focused, and chance keeps the
+// others (settle_sky). Both lights are asked for by scatterings as well, for what comes from more than half
 // way round towards the light: a path that runs away from it would have to turn round by chance, which forward
-// scattering does rarely. What comes from further ahead (is_own) is left to where the path goes on. Based on: paths
+// scattering does rarely. What comes from further ahead (ClaimCone) is left to where the path goes on. Based on: paths
 // drawn from the light's end on a given number of scatterings: I. Georgiev et al., "Joint importance sampling of
 // low-order volumetric scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye,
 // "Non-uniform random variate generation", 1986, chapter VI.
@@ -44,18 +44,19 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
     const NodeAt& node = nodes_[q.node];
     const Path& path = paths_[node.path];
     if (branches_.empty() || !q.end.far || !space_.even_around(node.path)) return false;
-    if (node.event && (path.quiet != 0 || path.sky == Path::Sky::asked)) return false;
+    if (path.claims.stands(Technique::volume_chains)) return false;
     const Dir normal = hits_[node.slot].normal;
     if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
-    Guide& guide = guides_[q.node];
-    if (guide.chains != 0 && guide.light != q.light) return false;
+    NodeClaims& claims = guides_[q.node].claims;
+    constexpr auto kSmall = ClaimedLight::Kind::small;
+    if (const Claim* const claim = claims.of(kSmall); claim && claim->light != q.light) return false;
     const uint32_t mean = mean_toward(node, toward, length);
     if (mean == kNone) return false;
-    if (guide.chains == 0) guide.toward = toward;
-    guide.chains |= 1u << knot;
-    guide.light = q.light;
-    guide.reach = kReach * length;
-    if (draw_chain(node, toward, length, mean, false) && !is_own(node, chain_.toward[0])) follow_chain(q, knot);
+    if (!claims.of(kSmall))
+      claims.add(Claim::chains(q.light, kMostLinks, RefractedWay::kMostEvents), cone_toward(node, toward),
+                 kReach * length);
+    claims.add_hero(kSmall, knot);
+    if (draw_chain(node, toward, length, mean, false) && claims.are_for(chain_.toward[0])) follow_chain(q, knot);
     return true;
   }
   return false;
@@ -142,7 +143,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     Ray ray = ray_from(node, chain.toward[0]);
     for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
       ray.direction = chain.toward[i];
-      const double most = std::min(free_way(ray), guides_[q.node].reach);
+      const double most = std::min(free_way(ray), guides_[q.node].claims.reach());
       if (!(most > 0)) return throughputs_.give_back(p), false;
       const std::array<double, 4> u =
           chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
@@ -180,7 +181,7 @@ LinkPlace PathKernel<Surfaces, Space, Throughputs, Estimator>::link_place(const 
     const Dir light = chain_.toward[n], up = refracted_->has_sheet() ? refracted_->sheet_axis() : light;
     const double steep = dot(light, up), rise = std::copysign(std::max(kFlattest, std::fabs(steep)), steep),
                  albedo = space_.albedo(chain_.mean, k), extinction = space_.scattering(chain_.mean, k) / albedo,
-                 height = guides_[q.node].reach / kReach;
+                 height = guides_[q.node].claims.reach() / kReach;
     const auto more = [&](size_t j) { return extinction * (1 - dot(chain_.toward[j], up) / rise); };  // 1/m
     int others = 0;
     for (size_t j = i + 1; j < n; ++j) others += std::fabs(more(j)) * height < kSteep;
@@ -234,10 +235,10 @@ Ray PathKernel<Surfaces, Space, Throughputs, Estimator>::ray_from(const NodeAt& 
           path.draw};
 }
 
-// Whether light from a direction is left to the continuation of a scattering that asks along chains.
+// From half way between where the path is going and the chains' light.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_own(const NodeAt& node, Dir in) const {
-  return node.event && dot(in, paths_[node.path].direction) > dot(in, guide_of(node)->toward);
+ClaimCone PathKernel<Surfaces, Space, Throughputs, Estimator>::cone_toward(const NodeAt& node, Dir toward) const {
+  return {!node.event, paths_[node.path].direction, toward};
 }
 
 // What link i of the chain, where its way has come to, makes of light that comes from a direction.
@@ -251,47 +252,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(size_t i
   }
 }
 
-// Whether the light that the air sends along a flight's way to infinity has been asked for already, before `flown` m of
-// it were flown. Tells the path what is not to be asked for where the flight has ended.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_heard(Path& path, const Flight& flight, double flown,
-                                                                    double length) const {
-  if constexpr (kGuides) {
-    if (path.quiet == 0 && path.sky == Path::Sky::open) return false;
-    const bool scattered = flight.arrival == Arrival::scattered;
-    if (flight.arrival == Arrival::onward) {
-      path.passed += flown;
-      return false;
-    }
-    const bool beyond = scattered && (path.passed + flown > path.quiet_reach || path.quiet_events-- == 0);
-    if (!scattered || beyond) path.quiet = 0;
-    if (path.sky == Path::Sky::behind && length == std::numeric_limits<double>::infinity() && !scattered) return true;
-    if (beyond) path.sky = Path::Sky::open;
-  }
-  return false;
-}
-
-// Whether the light of the air's sky that a path meets if it passes the surface of node i has been asked for.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_asked_sky(size_t i, const Continuation& on) {
-  if constexpr (kGuides) {
-    const NodeAt& node = nodes_[i];
-    const Path& path = paths_[node.path];
-    const Dir normal = hits_[node.slot].normal;
-    if (path.sky != Path::Sky::asked || !on.dirac || node.event) return false;
-    if (!(dot(on.in, normal) * dot(path.direction, normal) > 0)) return false;
-    double density[kMaxKnots], any = 0;  // below the horizon it is never drawn
-    space_.hidden_sky()->densities(on.in, {density, knots()});
-    for (size_t k = 0; k < knots(); ++k) any += path.relative[k] * density[k];
-    if (!(any > 0)) return false;
-    RefractedSight::Node from;
-    from.place = path.origin - path.direction * path.passed, from.time = path.time, from.draw = path.draw;
-    const size_t knot = refracted_->interfaces().set_of()[static_cast<size_t>(path.knot)];
-    return refracted_->is_first_through_sheet(from, path.direction, on.in, knot);
-  }
-  return false;
-}
-
 // Asks for the light of the air's sky, which otherwise only chance would find, in one direction: unscattered and along
 // a chain.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -300,17 +260,15 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     const SkyThroughWater* const sky = options_.explicit_sources ? space_.hidden_sky() : nullptr;
     const Path& path = paths_[node.path];
     if (!sky || branches_.empty() || !asks_through(node) || !space_.even_around(node.path)) return;
-    if (node.event && (path.quiet != 0 || path.sky == Path::Sky::asked)) return;
+    if (path.claims.stands(Technique::volume_chains)) return;
     const Vec3 place = from_node(node).place;
     const double deep = refracted_->below_sheet(place);
     if (!(deep > 0)) return;
     const Dir up = refracted_->sheet_axis();
     const uint32_t mean = mean_toward(node, up, deep);
     if (mean == kNone) return;
-    Guide& guide = guides_[static_cast<size_t>(&node - nodes_.data())];
-    const double reach = guide.chains ? guide.reach : kReach * deep;
-    guide.sky = true, guide.reach = reach;
-    if (guide.chains == 0) guide.toward = up;
+    guides_[static_cast<size_t>(&node - nodes_.data())].claims.add(Claim::chains_of_sky(kMostLinks),
+                                                                   cone_toward(node, up), kReach * deep);
     const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
     const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
     if (!(sample.density > 0)) return;
@@ -336,8 +294,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     double density[kMaxKnots];
     sky.densities(to, {density, knots()});
     for (size_t k = 0; k < knots(); ++k) chain_.share[k] *= density[k];
+    const NodeClaims& claims = guides_[q.node].claims;
     if (chain_.links > 0) {
-      if (!is_own(node, chain_.toward[0])) follow_chain(q, knot);
+      if (claims.are_for(chain_.toward[0])) follow_chain(q, knot);
       return;
     }
     double shares = 0;
@@ -345,7 +304,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     RefractedQuestion alone = q;
     alone.scale /= shares;
     for (const RefractedWay& way : refracted_->first_through_sheet(from_node(node), to, knot))
-      if (!is_own(node, way.direction)) shine_along(way, alone, knot);
+      if (claims.are_for(way.direction)) shine_along(way, alone, knot);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "optics/scatter_model.h"
 #include "surface/surface.h"
 #include "transport/contribution.h"
+#include "transport/path/claims.h"
 
 namespace suite {
 
@@ -39,19 +40,7 @@ struct Lane {
   double other[K];
   Branch branch = Branch::none;
   bool sided = false;
-  // What its last surface has asked for along chains (kernel_chain.h) is not asked for again: which knots' ways, a bit
-  // for each, of which light, up to how many scatterings more, on flights of how many m.
-  uint32_t quiet = 0;
-  uint16_t quiet_light = 0;
-  uint16_t quiet_events = 0;
-  double quiet_reach = 0;
-  double passed = 0;  // m from its last node to `origin`, boundaries of media on the way
-  // The same of the light of the air's sky that comes by one smooth interface.
-  enum class Sky : uint8_t {
-    open,
-    asked,  // and nothing but scattered since
-    behind  // that interface, on the way that was asked along
-  } sky = Sky::open;
+  PathClaims claims;
   double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
   int knot = 0;              // whose shapes draw this path
   double share = 1;          // of a path's light, where it goes on in parts
@@ -61,9 +50,6 @@ struct Lane {
   uint8_t events = 0;        // EventKind so far
   uint8_t received = 0;      // 1: starts at a receiver
   WaterSeen water = WaterSeen::nothing;
-  uint8_t bends = kUnasked;  // smooth interfaces met since it last asked for light through them
-  // It never did, or the first of them reflected, or something else happened since.
-  static constexpr uint8_t kUnasked = 0xff;
   uint32_t order() const { return surfaces + scatterings; }
 };
 
