@@ -241,7 +241,7 @@ class PathKernel final : public PathTracing {
   uint32_t mean_toward(const NodeAt& node, Dir toward, double length);
   bool draw_chain(const NodeAt& node, Dir toward, double length, uint32_t mean, bool sky);
   std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const;
-  ClaimCone cone_toward(const NodeAt& node, Dir toward) const;
+  ClaimCone cone_of(const NodeAt& node, uint16_t light, size_t knot) const;
   RefractedSight::Node from_node(const NodeAt& node) const;
   Ray ray_from(const NodeAt& node, Dir toward) const;
   bool follow_chain(const RefractedQuestion& q, size_t knot);

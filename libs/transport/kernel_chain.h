@@ -53,7 +53,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
     const uint32_t mean = mean_toward(node, toward, length);
     if (mean == kNone) return false;
     if (!claims.of(kSmall))
-      claims.add(Claim::chains(q.light, kMostLinks, RefractedWay::kMostEvents), cone_toward(node, toward),
+      claims.add(Claim::chains(q.light, kMostLinks, RefractedWay::kMostEvents), cone_of(node, q.light, knot),
                  kReach * length);
     claims.add_hero(kSmall, knot);
     if (draw_chain(node, toward, length, mean, false) && claims.are_for(chain_.toward[0])) follow_chain(q, knot);
@@ -235,10 +235,16 @@ Ray PathKernel<Surfaces, Space, Throughputs, Estimator>::ray_from(const NodeAt& 
           path.draw};
 }
 
-// From half way between where the path is going and the chains' light.
+// By the middle of the light, as flat water would have its way leave the node: a cone that followed the sample of the
+// light that chains bring would take it for where it brings most, and what it leaves out would be less than that.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-ClaimCone PathKernel<Surfaces, Space, Throughputs, Estimator>::cone_toward(const NodeAt& node, Dir toward) const {
-  return {!node.event, paths_[node.path].direction, toward};
+ClaimCone PathKernel<Surfaces, Space, Throughputs, Estimator>::cone_of(const NodeAt& node, uint16_t light,
+                                                                       size_t knot) const {
+  if (!node.event) return {};
+  const auto beam = environment_.lights[light]->beam();
+  Dir toward = beam ? beam->direction : Dir{0, 0, 1};
+  if (refracted_->has_sheet()) toward = refracted_->sheet_guess(toward, knot).value_or(toward);
+  return {false, paths_[node.path].direction, toward};
 }
 
 // What link i of the chain, where its way has come to, makes of light that comes from a direction.
@@ -267,8 +273,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     const Dir up = refracted_->sheet_axis();
     const uint32_t mean = mean_toward(node, up, deep);
     if (mean == kNone) return;
-    guides_[static_cast<size_t>(&node - nodes_.data())].claims.add(Claim::chains_of_sky(kMostLinks),
-                                                                   cone_toward(node, up), kReach * deep);
+    guides_[static_cast<size_t>(&node - nodes_.data())].claims.add(
+        Claim::chains_of_sky(kMostLinks), ClaimCone{!node.event, path.direction, up}, kReach * deep);
     const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
     const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
     if (!(sample.density > 0)) return;
