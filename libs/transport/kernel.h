@@ -231,11 +231,11 @@ class PathKernel final : public PathTracing {
                 dimensions::of_link_place(kMostLinks, kMostLinks, true) < dimensions::kMostPerChain);
   static constexpr double kReach = 2, kDeepest = 8;
   struct Chain {
-    int links;                   // scatterings
-    Dir toward[kMostLinks + 1];  // from the node, and from each of them
-    double density[kMostLinks];  // of each direction but the last one, at the path's knot
-    uint32_t mean;               // the event that stands for all matter up to the light's interface
-    double share[kMaxKnots];     // r_k of it all, over the density that drew it
+    int links;                              // scatterings
+    Dir toward[kMostLinks + 1];             // from the node, and from each of them
+    double density[kMostLinks];             // of each direction but the last one, at the path's knot
+    uint32_t mean;                          // the event that stands for all matter up to the light's interface
+    HeroDensities<Surfaces::kKnots> share;  // r_k of it all, over the density that drew it
   };
   bool ask_along_chain(const RefractedQuestion& q, Dir toward, double length, size_t knot);
   uint32_t mean_toward(const NodeAt& node, Dir toward, double length);
@@ -265,7 +265,6 @@ class PathKernel final : public PathTracing {
   }
   // Of nodes at surfaces, where light is asked for through interfaces.
   bool is_interface(const NodeAt& node) const { return refracted_->interfaces().has(surfaces_.material(node.path)); }
-  // Whether the path leaves a surface on the other side.
   bool passes(const NodeAt& node, const Continuation& on) const {
     const Dir normal = hits_[node.slot].normal;
     return dot(on.in, normal) * dot(paths_[node.path].direction, normal) > 0;
@@ -316,6 +315,7 @@ class PathKernel final : public PathTracing {
   std::vector<int> knot_of_bin_;
   size_t bins_;
   std::array<double, kMaxKnots> probability_;  // P_k
+  std::span<const double> P() const { return std::span(probability_).first(knots()); }
   const bool keep_first_;
   const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;

@@ -94,7 +94,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       return LinkCount(space_.scattering(mean, k) * length, space_.albedo(mean, k), least, kMostLinks);
     };
     chain.links = count(own).draw(u[3]);
-    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * count(k).probability(chain.links);
+    double of_count[kMaxKnots];
+    for (size_t k = 0; k < knots(); ++k) of_count[k] = count(k).probability(chain.links);
+    chain.share.set(knots(), path.relative, of_count, 1);
     const auto n = static_cast<size_t>(chain.links);
     chain.toward[n] = toward;
     for (size_t i = n; i-- > 0;) {
@@ -105,7 +107,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       space_.densities(mean, -chain.toward[i + 1], chain.toward[i], {density, knots()});
       chain.density[i] = density[own];
       if (!(density[own] > 0)) return false;
-      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= double{density[k]} / double{density[own]};
+      chain.share.take(knots(), density, double{density[own]});
     }
     return true;
   }
@@ -155,7 +157,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
       };
       const double density = density_at(own);
       if (!(density > 0)) return throughputs_.give_back(p), false;
-      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= density_at(k) / density;
+      double of_place[kMaxKnots];
+      for (size_t k = 0; k < knots(); ++k) of_place[k] = density_at(k);
+      chain.share.take(knots(), of_place, density);
       // At once: 24 ways of 100 m each, and as many coefficients of 0.01 1/m, do not fit into floats.
       for (size_t b = 0; b < bins_; ++b) through[b] *= static_cast<float>(most / density);
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
@@ -164,9 +168,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     }
     throughputs_.give_back(p);
     space_.hold_way();
-    double shares = 0;
-    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
-    return shine_behind_chain(q, knot, ray.origin, 1 / shares, arrival);
+    return shine_behind_chain(q, knot, ray.origin, 1 / chain.share.mean(P()), arrival);
   }
   return false;
 }
@@ -299,16 +301,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     if (!draw_chain(node, *toward, deep / refracted_->steepness(*toward), mean, true)) return;
     double density[kMaxKnots];
     sky.densities(to, {density, knots()});
-    for (size_t k = 0; k < knots(); ++k) chain_.share[k] *= density[k];
+    chain_.share.take(knots(), density, 1);
     const NodeClaims& claims = guides_[q.node].claims;
     if (chain_.links > 0) {
       if (claims.are_for(chain_.toward[0])) follow_chain(q, knot);
       return;
     }
-    double shares = 0;
-    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain_.share[k];
     RefractedQuestion alone = q;
-    alone.scale /= shares;
+    alone.scale /= chain_.share.mean(P());
     for (const RefractedWay& way : refracted_->first_through_sheet(from_node(node), to, knot))
       if (claims.are_for(way.direction)) shine_along(way, alone, knot);
   }

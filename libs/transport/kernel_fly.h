@@ -98,7 +98,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.share = 1;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing, path.knot = 0;
-  std::fill_n(path.relative, knots(), 1.0);
+  path.relative.start(knots());
   std::fill_n(path.throughput, knots(), 1.0);
   if (knots() > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));
   PathRecord& record = records_[p];

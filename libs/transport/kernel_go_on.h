@@ -74,21 +74,22 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, const Continuation& on, double own,
                                                                   double& brightest) {
   Path& path = paths_[p];
-  double shares = 0;
   for (size_t k = 0; k < knots(); ++k) {
     const float w = on.weight.spectrum ? on.weight.spectrum[knot_bins_[k]] : 1;
     path.throughput[k] *= double{on.weight.scale} * w / own;
-    if constexpr (Surfaces::kKnots == 1) {
-      brightest = path.throughput[0];
-      return 1;
-    }
-    if (kGuides && (on.branch != Branch::none || on.sided)) path.other[k] = path.relative[k] * on.other[k] / own;
-    path.relative[k] *= on.density[k] / own;
-    shares += probability_[k] * path.relative[k];
   }
+  if constexpr (Surfaces::kKnots == 1) {
+    brightest = path.throughput[0];
+    return 1;
+  }
+  const bool two_ways = kGuides && (on.branch != Branch::none || on.sided);
+  if (two_ways) path.other.set(knots(), path.relative, on.other, own);
+  path.relative.take(knots(), on.density, own);
+  const double shares = path.relative.mean(P());
+  path.relative.divide(knots(), shares);
+  if (two_ways) path.other.divide(knots(), shares);
   for (size_t k = 0; k < knots(); ++k) {
-    path.relative[k] /= shares, path.throughput[k] /= shares;
-    if (kGuides && (on.branch != Branch::none || on.sided)) path.other[k] /= shares;
+    path.throughput[k] /= shares;
     if (!(path.throughput[k] <= brightest)) brightest = path.throughput[k];
     if (std::isnan(brightest)) return shares;
   }

@@ -133,9 +133,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
     if constexpr (Surfaces::kDense > 0) share_with_gloss(node, in, {density, knots()});
   }
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
-  double sum = 0;
-  for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];
-  return sum;
+  return path.relative.mean(P(), density, reach);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>

@@ -9,6 +9,7 @@
 #include "surface/surface.h"
 #include "transport/contribution.h"
 #include "transport/path/claims.h"
+#include "transport/path/hero.h"
 
 namespace suite {
 
@@ -28,16 +29,16 @@ struct Lane {
   uint32_t draw = 0;  // Ray::draw
   Vec3 origin;        // of the next segment
   Dir direction;
-  double time = 0;          // s
-  std::array<double, 4> u;  // numbers of the current node
-  double length = 0;        // m so far
-  double arrival = 0;       // m so far, times the index of refraction
-  double relative[K];       // r_k (shares.h)
-  double throughput[K];     // at the knots, for roulette
-  double before = 1;        // A before the last event over A after it
+  double time = 0;            // s
+  std::array<double, 4> u;    // numbers of the current node
+  double length = 0;          // m so far
+  double arrival = 0;         // m so far, times the index of refraction
+  HeroDensities<K> relative;  // r_k (shares.h)
+  double throughput[K];       // at the knots, for roulette
+  double before = 1;          // A before the last event over A after it
   // r_k, with the density of the other way in which the last event's branches draw a scattering (kernel_branch.h).
   // Or that of a side flight having come from the last event to here (kernel_side.h), where `sided`.
-  double other[K];
+  HeroDensities<K> other;
   Branch branch = Branch::none;
   bool sided = false;
   PathClaims claims;
