@@ -43,7 +43,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
   if constexpr (kGuides && Surfaces::kDense > 0) {
     const NodeAt& node = nodes_[q.node];
     const Path& path = paths_[node.path];
-    if (branches_.empty() || !q.end.far || !space_.even_around(node.path)) return false;
+    if (!options_.volume_chains || branches_.empty() || !q.end.far || !space_.even_around(node.path)) return false;
     if (path.claims.stands(Technique::volume_chains)) return false;
     const Dir normal = hits_[node.slot].normal;
     if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
@@ -265,7 +265,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(size_t i
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-    const SkyThroughWater* const sky = options_.explicit_sources ? space_.hidden_sky() : nullptr;
+    const bool asks = options_.explicit_sources && options_.volume_chains;
+    const SkyThroughWater* const sky = asks ? space_.hidden_sky() : nullptr;
     const Path& path = paths_[node.path];
     if (!sky || branches_.empty() || !asks_through(node) || !space_.even_around(node.path)) return;
     if (path.claims.stands(Technique::volume_chains)) return;
