@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 
 #include "formats/curve/curve.h"
@@ -7,6 +8,7 @@
 #include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sim_text/sources.h"
+#include "transport/technique_switches.h"
 #include "transport/truth/truth.h"
 
 namespace suite {
@@ -88,6 +90,16 @@ void check_times(const Params& p, const Sensor& sensor, const SensorContext& con
       }
 }
 
+void read_techniques(const Params& p, PipelineOptions& options) {
+  for (const std::string& key : p.keys()) {
+    const auto all = technique_switches();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const TechniqueSwitch& s) { return s.name == key; });
+    if (found == all.end())
+      throw Error(p.where(key), "there is no technique '" + key + "'", "one of: " + names_of_techniques());
+    if (!p.at(key).as_bool()) found->off(options);
+  }
+}
+
 // What a sensor finds wrong without knowing where stands at the sensor.
 std::unique_ptr<Sensor> make_sensor_at(const Params& p, const SensorContext& context) {
   try {
@@ -120,6 +132,7 @@ Simulation read_simulation_tree(const Params& root, const std::string& path, con
   sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 0, 10'000'000, 0));
   sim.pipeline.refracted_sources = root.boolean("manifold_nee", true);
   if (!root.boolean("caustic_guiding", true)) sim.pipeline.gloss_photons = 0;
+  if (const auto p = root.find("techniques")) read_techniques(*p, sim.pipeline);
   std::vector<AskedCurve> asked;
   sim.sources = read_sources(root, asked);
   if (const auto p = root.find("periodic")) {

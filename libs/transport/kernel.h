@@ -202,18 +202,13 @@ class PathKernel final : public PathTracing {
   void keep_bins_of(size_t knot, std::span<float> through) const;
   bool weaken(const Path& path, const RefractedWay& way, size_t knot, bool sky, std::span<float> through,
               double& arrival);
-  uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
   double lost(const Question& q, size_t ray, double passes);
   static constexpr bool kGuides = Space::kScatters && !Space::kGoesBack;  // places are scattered at in what fills space
   // kernel_guide.h: continuations towards where media scatter such lights forwards.
   struct Guide {
     bool branch = false;  // a continuation is drawn about `toward`, beside the others
     Dir toward;
-    // Light that has been asked for along chains: for which knots' ways, a bit for each; m.
-    uint32_t chains = 0;
-    uint16_t light = 0;
-    double reach = 0;
-    bool sky = false;  // and that of the sky, with as long a reach
+    NodeClaims claims;  // of chains
   };
   void guide(const RefractedQuestion& q, const RefractedWay& way);
   const Guide* guide_of(const NodeAt& node) const {
@@ -236,17 +231,17 @@ class PathKernel final : public PathTracing {
                 dimensions::of_link_place(kMostLinks, kMostLinks, true) < dimensions::kMostPerChain);
   static constexpr double kReach = 2, kDeepest = 8;
   struct Chain {
-    int links;                   // scatterings
-    Dir toward[kMostLinks + 1];  // from the node, and from each of them
-    double density[kMostLinks];  // of each direction but the last one, at the path's knot
-    uint32_t mean;               // the event that stands for all matter up to the light's interface
-    double share[kMaxKnots];     // r_k of it all, over the density that drew it
+    int links;                              // scatterings
+    Dir toward[kMostLinks + 1];             // from the node, and from each of them
+    double density[kMostLinks];             // of each direction but the last one, at the path's knot
+    uint32_t mean;                          // the event that stands for all matter up to the light's interface
+    HeroDensities<Surfaces::kKnots> share;  // r_k of it all, over the density that drew it
   };
   bool ask_along_chain(const RefractedQuestion& q, Dir toward, double length, size_t knot);
   uint32_t mean_toward(const NodeAt& node, Dir toward, double length);
   bool draw_chain(const NodeAt& node, Dir toward, double length, uint32_t mean, bool sky);
   std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const;
-  bool is_own(const NodeAt& node, Dir in) const;
+  ClaimCone cone_of(const NodeAt& node, uint16_t light, size_t knot) const;
   RefractedSight::Node from_node(const NodeAt& node) const;
   Ray ray_from(const NodeAt& node, Dir toward) const;
   bool follow_chain(const RefractedQuestion& q, size_t knot);
@@ -254,8 +249,6 @@ class PathKernel final : public PathTracing {
   void scatter_along(size_t i, Dir from, std::span<float> through, std::span<float> memory);
   bool shine_behind_chain(const RefractedQuestion& q, size_t knot, Vec3 place, double scale, double arrival);
   double free_way(const Ray& ray);
-  bool has_asked_sky(size_t i, const Continuation& on);
-  bool has_heard(Path& path, const Flight& flight, double flown, double length) const;
   void ask_sky(const NodeAt& node);
   void ask_sky(const NodeAt& node, size_t knot, const SkyThroughWater& sky, Dir to, double deep, uint32_t mean);
   // kernel_branch.h: paths that go on in more than one way.
@@ -268,13 +261,24 @@ class PathKernel final : public PathTracing {
   void branch_mirrored(size_t i);
   void branch_guided(size_t i);
   bool at_first_interface(const NodeAt& node) const {
-    return !branches_.empty() && is_first(node) && !node.event &&
-           refracted_->interfaces().has(surfaces_.material(node.path));
+    return !branches_.empty() && is_first(node) && !node.event && is_interface(node);
   }
-  // Whether its last node has asked for all light that comes along the way which it has taken since.
-  bool is_asked_through(const Path& path) const {
-    return refracted_ && path.bends > 0 && path.bends <= RefractedWay::kMostEvents;
+  // Of nodes at surfaces, where light is asked for through interfaces.
+  bool is_interface(const NodeAt& node) const { return refracted_->interfaces().has(surfaces_.material(node.path)); }
+  bool passes(const NodeAt& node, const Continuation& on) const {
+    const Dir normal = hits_[node.slot].normal;
+    return dot(on.in, normal) * dot(paths_[node.path].direction, normal) > 0;
   }
+  // kernel_claims.h: who brings which light.
+  void leave_claims(const NodeAt& node, const Continuation& on);
+  bool passes_into_claimed_sky(size_t i, const Continuation& on) const;
+  void settle_sky(size_t i, const Continuation& on);
+  // Whether a technique brings a light that the path has met.
+  bool is_claimed(const Path& path, ClaimedLight light) const {
+    return refracted_ && owner(path.claims, light, hero_of(path)) != Technique::chance;
+  }
+  // The hero wavelength that stands for those that smooth interfaces bend like the path's own.
+  size_t hero_of(const Path& path) const { return refracted_->interfaces().set_of()[static_cast<size_t>(path.knot)]; }
   SUITE_INLINE double chance(const NodeAt& node, Dir in, std::span<const double> reach) const;
   SUITE_INLINE Factor evaluate(const NodeAt& node, Dir in, std::span<float> dense);
   // What path p has come to of water when it goes on from a node of the stage towards `in`.
@@ -311,6 +315,7 @@ class PathKernel final : public PathTracing {
   std::vector<int> knot_of_bin_;
   size_t bins_;
   std::array<double, kMaxKnots> probability_;  // P_k
+  std::span<const double> P() const { return std::span(probability_).first(knots()); }
   const bool keep_first_;
   const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;

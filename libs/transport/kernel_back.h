@@ -61,17 +61,12 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_back(uint32_t p) {
   const auto density = space_.go_to(p, path, at.length, u[1], through);
   if (density) {
     const double own = (*density)[static_cast<size_t>(path.knot)];
-    double shares = 0;  // as of weigh()
-    for (size_t k = 0; k < knots(); ++k) {
-      path.relative[k] *= (*density)[k] / own;
-      shares += probability_[k] * path.relative[k];
-    }
+    path.relative.take(knots(), *density, own);
+    const double shares = path.relative.mean(P());
     const auto scale = static_cast<float>(sum / (at.weight * chance * own * shares));
     for (size_t i = 0; i < bins_; ++i) there[i] *= scale * through[i];
-    for (size_t k = 0; k < knots(); ++k) {
-      path.relative[k] /= shares;
-      path.throughput[k] *= double{scale} * through[knot_bins_[k]];
-    }
+    path.relative.divide(knots(), shares);
+    for (size_t k = 0; k < knots(); ++k) path.throughput[k] *= double{scale} * through[knot_bins_[k]];
     throughputs_.resume(p, there);
     ++path.scatterings;
     path.events |= by_medium;

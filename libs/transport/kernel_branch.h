@@ -68,7 +68,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_part(uint32_t p, 
     double chosen[kMaxKnots], sum = 0;
     for (size_t k = 0; k < knots(); ++k) {
       const double albedo = space_.albedo_around(p, k);
-      sum += chosen[k] = probability_[k] * path.relative[k] * std::max(kLeast, albedo * albedo);
+      sum += chosen[k] = path.relative.part(P(), k) * std::max(kLeast, albedo * albedo);
     }
     double left = (j + path.stream.hashed(path.sample, dimensions::kKnot)) / kParts;
     bool drawn = false;

@@ -13,16 +13,16 @@
 // last one, of which the way may come from another direction than s; in the mean Poisson's law, places and
 // transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
 // chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no surface.
-// What continuations of the node find of it is left out (Lane::quiet). Matter must let some light through unscattered
+// They claim it (path/claims.h). Matter must let some light through unscattered
 // (kDeepest) and be the same everywhere beside the node, or in layers: boundaries that bend nothing are passed, chains
 // are drawn from the mean of what lies on the light's way, and count with what is there.
 //
 // The sky of the air is asked for in the same way, 0 <= n, towards a direction above the water that the path's knot has
 // drawn (sky_through_water.h), where the scene's only refractor is a sheet. Light from there may come through waves in
-// several ways; the one that Newton's method finds first is asked for, unless it is much focused, and what chance finds
-// of it left out (has_asked_sky). Both lights are asked for by scatterings as well, for what comes from more than half
+// several ways; the one that Newton's method finds first is asked for, unless it is much focused, and chance keeps the
+// others (settle_sky). Both lights are asked for by scatterings as well, for what comes from more than half
 // way round towards the light: a path that runs away from it would have to turn round by chance, which forward
-// scattering does rarely. What comes from further ahead (is_own) is left to where the path goes on. Based on: paths
+// scattering does rarely. What comes from further ahead (ClaimCone) is left to where the path goes on. Based on: paths
 // drawn from the light's end on a given number of scatterings: I. Georgiev et al., "Joint importance sampling of
 // low-order volumetric scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye,
 // "Non-uniform random variate generation", 1986, chapter VI.
@@ -43,19 +43,20 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
   if constexpr (kGuides && Surfaces::kDense > 0) {
     const NodeAt& node = nodes_[q.node];
     const Path& path = paths_[node.path];
-    if (branches_.empty() || !q.end.far || !space_.even_around(node.path)) return false;
-    if (node.event && (path.quiet != 0 || path.sky == Path::Sky::asked)) return false;
+    if (!options_.volume_chains || branches_.empty() || !q.end.far || !space_.even_around(node.path)) return false;
+    if (path.claims.stands(Technique::volume_chains)) return false;
     const Dir normal = hits_[node.slot].normal;
     if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
-    Guide& guide = guides_[q.node];
-    if (guide.chains != 0 && guide.light != q.light) return false;
+    NodeClaims& claims = guides_[q.node].claims;
+    constexpr auto kSmall = ClaimedLight::Kind::small;
+    if (const Claim* const claim = claims.of(kSmall); claim && claim->light != q.light) return false;
     const uint32_t mean = mean_toward(node, toward, length);
     if (mean == kNone) return false;
-    if (guide.chains == 0) guide.toward = toward;
-    guide.chains |= 1u << knot;
-    guide.light = q.light;
-    guide.reach = kReach * length;
-    if (draw_chain(node, toward, length, mean, false) && !is_own(node, chain_.toward[0])) follow_chain(q, knot);
+    if (!claims.of(kSmall))
+      claims.add(Claim::chains(q.light, kMostLinks, RefractedWay::kMostEvents), cone_of(node, q.light, knot),
+                 kReach * length);
+    claims.add_hero(kSmall, knot);
+    if (draw_chain(node, toward, length, mean, false) && claims.are_for(chain_.toward[0])) follow_chain(q, knot);
     return true;
   }
   return false;
@@ -93,7 +94,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       return LinkCount(space_.scattering(mean, k) * length, space_.albedo(mean, k), least, kMostLinks);
     };
     chain.links = count(own).draw(u[3]);
-    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * count(k).probability(chain.links);
+    double of_count[kMaxKnots];
+    for (size_t k = 0; k < knots(); ++k) of_count[k] = count(k).probability(chain.links);
+    chain.share.set(knots(), path.relative, of_count, 1);
     const auto n = static_cast<size_t>(chain.links);
     chain.toward[n] = toward;
     for (size_t i = n; i-- > 0;) {
@@ -104,7 +107,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       space_.densities(mean, -chain.toward[i + 1], chain.toward[i], {density, knots()});
       chain.density[i] = density[own];
       if (!(density[own] > 0)) return false;
-      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= double{density[k]} / double{density[own]};
+      chain.share.take(knots(), density, double{density[own]});
     }
     return true;
   }
@@ -142,7 +145,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     Ray ray = ray_from(node, chain.toward[0]);
     for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
       ray.direction = chain.toward[i];
-      const double most = std::min(free_way(ray), guides_[q.node].reach);
+      const double most = std::min(free_way(ray), guides_[q.node].claims.reach());
       if (!(most > 0)) return throughputs_.give_back(p), false;
       const std::array<double, 4> u =
           chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
@@ -154,7 +157,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
       };
       const double density = density_at(own);
       if (!(density > 0)) return throughputs_.give_back(p), false;
-      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= density_at(k) / density;
+      double of_place[kMaxKnots];
+      for (size_t k = 0; k < knots(); ++k) of_place[k] = density_at(k);
+      chain.share.take(knots(), of_place, density);
       // At once: 24 ways of 100 m each, and as many coefficients of 0.01 1/m, do not fit into floats.
       for (size_t b = 0; b < bins_; ++b) through[b] *= static_cast<float>(most / density);
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
@@ -163,9 +168,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     }
     throughputs_.give_back(p);
     space_.hold_way();
-    double shares = 0;
-    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
-    return shine_behind_chain(q, knot, ray.origin, 1 / shares, arrival);
+    return shine_behind_chain(q, knot, ray.origin, 1 / chain.share.mean(P()), arrival);
   }
   return false;
 }
@@ -180,7 +183,7 @@ LinkPlace PathKernel<Surfaces, Space, Throughputs, Estimator>::link_place(const 
     const Dir light = chain_.toward[n], up = refracted_->has_sheet() ? refracted_->sheet_axis() : light;
     const double steep = dot(light, up), rise = std::copysign(std::max(kFlattest, std::fabs(steep)), steep),
                  albedo = space_.albedo(chain_.mean, k), extinction = space_.scattering(chain_.mean, k) / albedo,
-                 height = guides_[q.node].reach / kReach;
+                 height = guides_[q.node].claims.reach() / kReach;
     const auto more = [&](size_t j) { return extinction * (1 - dot(chain_.toward[j], up) / rise); };  // 1/m
     int others = 0;
     for (size_t j = i + 1; j < n; ++j) others += std::fabs(more(j)) * height < kSteep;
@@ -234,10 +237,16 @@ Ray PathKernel<Surfaces, Space, Throughputs, Estimator>::ray_from(const NodeAt& 
           path.draw};
 }
 
-// Whether light from a direction is left to the continuation of a scattering that asks along chains.
+// By the middle of the light, as flat water would have its way leave the node: a cone that followed the sample of the
+// light that chains bring would take it for where it brings most, and what it leaves out would be less than that.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_own(const NodeAt& node, Dir in) const {
-  return node.event && dot(in, paths_[node.path].direction) > dot(in, guide_of(node)->toward);
+ClaimCone PathKernel<Surfaces, Space, Throughputs, Estimator>::cone_of(const NodeAt& node, uint16_t light,
+                                                                       size_t knot) const {
+  if (!node.event) return {};
+  const auto beam = environment_.lights[light]->beam();
+  Dir toward = beam ? beam->direction : Dir{0, 0, 1};
+  if (refracted_->has_sheet()) toward = refracted_->sheet_guess(toward, knot).value_or(toward);
+  return {false, paths_[node.path].direction, toward};
 }
 
 // What link i of the chain, where its way has come to, makes of light that comes from a direction.
@@ -251,66 +260,24 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(size_t i
   }
 }
 
-// Whether the light that the air sends along a flight's way to infinity has been asked for already, before `flown` m of
-// it were flown. Tells the path what is not to be asked for where the flight has ended.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_heard(Path& path, const Flight& flight, double flown,
-                                                                    double length) const {
-  if constexpr (kGuides) {
-    if (path.quiet == 0 && path.sky == Path::Sky::open) return false;
-    const bool scattered = flight.arrival == Arrival::scattered;
-    if (flight.arrival == Arrival::onward) {
-      path.passed += flown;
-      return false;
-    }
-    const bool beyond = scattered && (path.passed + flown > path.quiet_reach || path.quiet_events-- == 0);
-    if (!scattered || beyond) path.quiet = 0;
-    if (path.sky == Path::Sky::behind && length == std::numeric_limits<double>::infinity() && !scattered) return true;
-    if (beyond) path.sky = Path::Sky::open;
-  }
-  return false;
-}
-
-// Whether the light of the air's sky that a path meets if it passes the surface of node i has been asked for.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_asked_sky(size_t i, const Continuation& on) {
-  if constexpr (kGuides) {
-    const NodeAt& node = nodes_[i];
-    const Path& path = paths_[node.path];
-    const Dir normal = hits_[node.slot].normal;
-    if (path.sky != Path::Sky::asked || !on.dirac || node.event) return false;
-    if (!(dot(on.in, normal) * dot(path.direction, normal) > 0)) return false;
-    double density[kMaxKnots], any = 0;  // below the horizon it is never drawn
-    space_.hidden_sky()->densities(on.in, {density, knots()});
-    for (size_t k = 0; k < knots(); ++k) any += path.relative[k] * density[k];
-    if (!(any > 0)) return false;
-    RefractedSight::Node from;
-    from.place = path.origin - path.direction * path.passed, from.time = path.time, from.draw = path.draw;
-    const size_t knot = refracted_->interfaces().set_of()[static_cast<size_t>(path.knot)];
-    return refracted_->is_first_through_sheet(from, path.direction, on.in, knot);
-  }
-  return false;
-}
-
 // Asks for the light of the air's sky, which otherwise only chance would find, in one direction: unscattered and along
 // a chain.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-    const SkyThroughWater* const sky = options_.explicit_sources ? space_.hidden_sky() : nullptr;
+    const bool asks = options_.explicit_sources && options_.volume_chains;
+    const SkyThroughWater* const sky = asks ? space_.hidden_sky() : nullptr;
     const Path& path = paths_[node.path];
     if (!sky || branches_.empty() || !asks_through(node) || !space_.even_around(node.path)) return;
-    if (node.event && (path.quiet != 0 || path.sky == Path::Sky::asked)) return;
+    if (path.claims.stands(Technique::volume_chains)) return;
     const Vec3 place = from_node(node).place;
     const double deep = refracted_->below_sheet(place);
     if (!(deep > 0)) return;
     const Dir up = refracted_->sheet_axis();
     const uint32_t mean = mean_toward(node, up, deep);
     if (mean == kNone) return;
-    Guide& guide = guides_[static_cast<size_t>(&node - nodes_.data())];
-    const double reach = guide.chains ? guide.reach : kReach * deep;
-    guide.sky = true, guide.reach = reach;
-    if (guide.chains == 0) guide.toward = up;
+    guides_[static_cast<size_t>(&node - nodes_.data())].claims.add(
+        Claim::chains_of_sky(kMostLinks), ClaimCone{!node.event, path.direction, up}, kReach * deep);
     const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
     const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
     if (!(sample.density > 0)) return;
@@ -335,17 +302,16 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     if (!draw_chain(node, *toward, deep / refracted_->steepness(*toward), mean, true)) return;
     double density[kMaxKnots];
     sky.densities(to, {density, knots()});
-    for (size_t k = 0; k < knots(); ++k) chain_.share[k] *= density[k];
+    chain_.share.take(knots(), density, 1);
+    const NodeClaims& claims = guides_[q.node].claims;
     if (chain_.links > 0) {
-      if (!is_own(node, chain_.toward[0])) follow_chain(q, knot);
+      if (claims.are_for(chain_.toward[0])) follow_chain(q, knot);
       return;
     }
-    double shares = 0;
-    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain_.share[k];
     RefractedQuestion alone = q;
-    alone.scale /= shares;
+    alone.scale /= chain_.share.mean(P());
     for (const RefractedWay& way : refracted_->first_through_sheet(from_node(node), to, knot))
-      if (!is_own(node, way.direction)) shine_along(way, alone, knot);
+      if (claims.are_for(way.direction)) shine_along(way, alone, knot);
   }
 }
 

@@ -93,12 +93,12 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.length = path.arrival = path.last_density = 0;
   path.before = 1;
   path.surfaces = path.scatterings = path.flights = 0, path.events = 0;
-  path.bends = Path::kUnasked;
+  path.claims.clear();
   path.branch = Branch::none, path.sided = false;
-  path.quiet = 0, path.sky = Path::Sky::open, path.share = 1, path.passed = 0;
+  path.share = 1;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing, path.knot = 0;
-  std::fill_n(path.relative, knots(), 1.0);
+  path.relative.start(knots());
   std::fill_n(path.throughput, knots(), 1.0);
   if (knots() > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));
   PathRecord& record = records_[p];
@@ -197,7 +197,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   const bool ends = hit.hit() || length < std::numeric_limits<double>::infinity() || meets_outside(path);
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, ends, through, emitted);
   const Flight& flight = flights_[slot];
-  c.radiance = has_heard(path, flight, path.length - before, length) ? nullptr : flight.emitted;
+  const double flown = path.length - before;
+  if (flight.arrival == Arrival::scattered) path.claims.scatter(flown);
+  if (flight.arrival == Arrival::onward) path.claims.pass_boundary(flown);
+  const bool leaves = flight.arrival == Arrival::met && length == std::numeric_limits<double>::infinity();
+  c.radiance = leaves && is_claimed(path, ClaimedLight::sky()) ? nullptr : flight.emitted;
   if (flight.difference) c.light = kFromAir;
   // The sky of the air was asked for, too.
   if (const Light* sky = c.radiance && length == std::numeric_limits<double>::infinity() ? space_.sky() : nullptr)
@@ -207,14 +211,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   if (c.radiance) return contribute();
   throughputs_.give_back(p);
   if (!flight.through.spectrum) throughputs_.give_back(p);
-}
-
-// Whether anything but what fills space shines at a path that leaves the scene.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meets_outside(const Path& path) const {
-  return std::any_of(outside_.begin(), outside_.end(), [&](const Asked& light) {
-    return light.light->met_outside(path.direction, path.time).has_value();
-  });
 }
 
 // Sorts paths by what they have come to.
@@ -233,7 +229,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::arrive() {
       }
       if (arrival != Arrival::met) continue;
     }
-    if (hits_[i].hit() ? meet(p, i) : meet_earth(p, i)) nodes_.push_back({p, i, false});
+    if (!(hits_[i].hit() ? meet(p, i) : meet_earth(p, i))) continue;
+    nodes_.push_back({p, i, false});
+    if (refracted_ && !is_interface(nodes_.back())) paths_[p].claims.clear();
   }
   nodes_met_ += nodes_.size();
   for (const uint32_t p : std::exchange(received_, {})) receive(p);
@@ -331,9 +329,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
   const Path& path = paths_[p];
   records_[p].end = PathEnd::escaped;
   records_[p].escape = path.direction;
-  const bool asked_through = is_asked_through(path);
   for (const Asked& light : outside_) {
-    if (asked_through && is_refracted(light.nature)) continue;
+    if (is_refracted(light.nature) && is_claimed(path, {ClaimedLight::Kind::small, light.index})) continue;
     const auto met = light.light->met_outside(path.direction, path.time);
     if (!met) continue;
     std::span<float> memory;
@@ -364,9 +361,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, 
   if (Space::kScatters && shared)  // boundaries of media may have been passed on the way
     distance = surface_.tracer().periodic() ? path.length - last.length : length(hit.position - last.at.position);
   const double cosine = -dot(path.direction, hit.normal);
-  const bool asked_through = is_asked_through(path);
   for (const Asked& light : glowing_) {
-    if (asked_through && light.nature.placed && light.light->draws(hit)) continue;
+    if (light.nature.placed && is_claimed(path, {ClaimedLight::Kind::small, light.index}) && light.light->draws(hit))
+      continue;
     const auto met =
         light.light->met_surface(last.at, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
     if (!met) continue;

@@ -74,21 +74,22 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, const Continuation& on, double own,
                                                                   double& brightest) {
   Path& path = paths_[p];
-  double shares = 0;
   for (size_t k = 0; k < knots(); ++k) {
     const float w = on.weight.spectrum ? on.weight.spectrum[knot_bins_[k]] : 1;
     path.throughput[k] *= double{on.weight.scale} * w / own;
-    if constexpr (Surfaces::kKnots == 1) {
-      brightest = path.throughput[0];
-      return 1;
-    }
-    if (kGuides && (on.branch != Branch::none || on.sided)) path.other[k] = path.relative[k] * on.other[k] / own;
-    path.relative[k] *= on.density[k] / own;
-    shares += probability_[k] * path.relative[k];
   }
+  if constexpr (Surfaces::kKnots == 1) {
+    brightest = path.throughput[0];
+    return 1;
+  }
+  const bool two_ways = kGuides && (on.branch != Branch::none || on.sided);
+  if (two_ways) path.other.set(knots(), path.relative, on.other, own);
+  path.relative.take(knots(), on.density, own);
+  const double shares = path.relative.mean(P());
+  path.relative.divide(knots(), shares);
+  if (two_ways) path.other.divide(knots(), shares);
   for (size_t k = 0; k < knots(); ++k) {
-    path.relative[k] /= shares, path.throughput[k] /= shares;
-    if (kGuides && (on.branch != Branch::none || on.sided)) path.other[k] /= shares;
+    path.throughput[k] /= shares;
     if (!(path.throughput[k] <= brightest)) brightest = path.throughput[k];
     if (std::isnan(brightest)) return shares;
   }
@@ -112,7 +113,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continu
   if (!draw(i, memory, on)) return false;
   if (kDraws && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
   if (kGuides && is_guided(node) && on.branch == Branch::none) share_with_guide(node, false, on);
-  on.heard = has_asked_sky(i, on);
+  settle_sky(i, on);
   return true;
 }
 
@@ -152,9 +153,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, const Continuation& on) const {
   if constexpr (kGuides) {
-    constexpr double kLeaves = 6, kHeard = 0.1;
+    constexpr double kLeaves = 6, kClaimed = 0.1;
     const double index = space_.index(nodes_[i].path);
-    if (on.heard) return kHeard;  // what has been asked for is not worth while
+    if (passes_into_claimed_sky(i, on)) return kClaimed;  // what others bring is not worth while
     if (!branches_.empty() && on.dirac && index > 1) return kLeaves * index * index;
   }
   return 1;
@@ -196,21 +197,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const uint32_t p = node.path;
   Path& path = paths_[p];
   path.branch = on.branch, path.sided = on.sided;
-  path.passed = 0;
-  if (kGuides && node.event && !guides_.empty())
-    if (const Guide& guide = *guide_of(node); guide.chains || guide.sky) {
-      const bool own = is_own(node, on.in);
-      path.quiet = own ? 0 : guide.chains, path.quiet_light = guide.light;
-      path.quiet_events = kMostLinks, path.quiet_reach = guide.reach;
-      path.sky = guide.sky && !own ? Path::Sky::asked : Path::Sky::open;
-    }
-  if (kGuides && !node.event && !guides_.empty()) {
-    const Guide& guide = *guide_of(node);
-    path.quiet = guide.chains, path.quiet_light = guide.light;
-    path.quiet_events = kMostLinks, path.quiet_reach = guide.reach;
-    path.sky = guide.sky ? Path::Sky::asked : on.heard ? Path::Sky::behind : Path::Sky::open;
-  }
-  if (refracted_) path.bends = bends_behind(node, on);
+  if (refracted_) leave_claims(node, on);
   if (waters_.any()) path.water = water_behind(node, on.in);
   if constexpr (Space::kScatters) {
     ++path.flights;
@@ -222,7 +209,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   }
   const Hit& hit = hits_[node.slot];
   path.events |= on.dirac ? by_surface | by_dirac : by_surface;
-  const bool passed = dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0;
+  const bool passed = passes(node, on);
   if (passed) space_.cross(p, hit, surfaces_.material(p), on.in);
   path.origin = surface_.tracer().leave(hit, on.in);
   path.direction = on.in;

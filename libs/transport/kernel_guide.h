@@ -25,7 +25,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::guide(const RefractedQ
     if (dot(way.direction, normal) * dot(paths_[node.path].direction, normal) > 0) return;  // other matter is there
     space_.stand(node.path);
     if (space_.scattering(node.path) * way.at[0].length > 0 && space_.asymmetry(node.path) > 0)
-      guide = {true, way.direction};
+      guide.branch = true, guide.toward = way.direction;
   }
 }
 

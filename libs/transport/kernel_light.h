@@ -14,6 +14,14 @@ std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::numbe
   return dimensions::at_surface(path.stream, path.sample, path.surfaces - 1, use);
 }
 
+// Whether anything but what fills space shines at a path that leaves the scene.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meets_outside(const Path& path) const {
+  return std::any_of(outside_.begin(), outside_.end(), [&](const Asked& light) {
+    return light.light->met_outside(path.direction, path.time).has_value();
+  });
+}
+
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 LightReceiver PathKernel<Surfaces, Space, Throughputs, Estimator>::receiver(const NodeAt& node) const {
   if constexpr (Space::kScatters)
@@ -125,9 +133,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
     if constexpr (Surfaces::kDense > 0) share_with_gloss(node, in, {density, knots()});
   }
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
-  double sum = 0;
-  for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];
-  return sum;
+  return path.relative.mean(P(), density, reach);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>

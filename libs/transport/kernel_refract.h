@@ -1,8 +1,7 @@
 // Definitions of kernel.h: manifold next-event estimation (MNEE): lights behind smooth interfaces (refracted_sight.h).
 //
 // Every node asks far lights that are small, and a place on one of the lamps, for all ways through such interfaces,
-// whatever the straight line towards the light meets; so what continuations of the node find of the light after a
-// smooth transmission and some more or smooth reflections, and nothing else, is left out (Lane::bends). The light comes
+// whatever the straight line towards the light meets, and claims their light (path/claims.h). The light comes
 // along a way with
 //   w(out, direction) x transmittances and reflectances of interfaces, squared indices, and of what fills space
 //     x |d(direction) / d(direction at a far light)|  x  radiance over its density, or irradiance;
@@ -32,7 +31,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::want_refracted(const N
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::asks_through(const NodeAt& node) const {
   if (node.event) return !Space::kGoesBack;  // the even field that it stands for knows no interfaces
-  return !refracted_->interfaces().has(surfaces_.material(node.path));  // Dirac lobes only
+  return !is_interface(node);                // Dirac lobes only
 }
 
 // A place on a lamp for every node.
@@ -55,20 +54,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::want_places() {
   }
 }
 
-// What continuations have passed since their last question, behind this node.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-uint8_t PathKernel<Surfaces, Space, Throughputs, Estimator>::bends_behind(const NodeAt& node,
-                                                                          const Continuation& on) const {
-  const Path& path = paths_[node.path];
-  if (node.event) return Space::kGoesBack ? Path::kUnasked : 0;
-  if (!on.dirac) return 0;
-  const Hit& hit = hits_[node.slot];
-  const bool passed = dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0;
-  if (path.bends >= RefractedWay::kMostEvents || (path.bends == 0 && !passed)) return Path::kUnasked;
-  return refracted_->interfaces().has(surfaces_.material(node.path)) ? static_cast<uint8_t>(path.bends + 1)
-                                                                     : Path::kUnasked;
-}
-
 // Of light that smooth surfaces stop on its straight way: the share that is lost there, having not been asked for
 // through them. passes: what they pass.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -85,11 +70,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted() {
     for (const RefractedQuestion& q : refracted_questions_) {
       const Path& path = paths_[nodes_[q.node].path];
       const std::vector<size_t>& set = refracted_->interfaces().set_of();
+      const Suffix behind = path.claims.behind_interface(false);
       for (size_t k = 0; k < knots(); ++k) {
         if (set[k] != k) continue;
         bool alive = false;  // else an interface on the path has parted it from these wavelengths
         for (size_t other = k; other < knots(); ++other) alive = alive || (set[other] == k && path.relative[other] > 0);
-        if (path.quiet >> k & 1 && nodes_[q.node].event && path.quiet_light == q.light) continue;
+        const ClaimedLight light{ClaimedLight::Kind::small, q.light};
+        // Chains that began before this scattering bring it.
+        if (owner(path.claims.all(), behind, light, k) == Technique::volume_chains) continue;
         if (alive) shine_refracted(q, k);
       }
     }

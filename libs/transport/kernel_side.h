@@ -60,9 +60,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::share_with_side(const 
 // The share of what has come one of two ways that is left to this one.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::alone(const Path& path) const {
-  double other = 1;
-  for (size_t k = 0; k < knots(); ++k) other += probability_[k] * path.other[k];
-  return 1 / other;
+  return 1 / path.other.mean_with(P(), 1);
 }
 
 // What a path's light would come to towards a direction, over even scattering of all of it.
@@ -72,9 +70,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::brings(const NodeAt&
     const Path& path = paths_[node.path];
     float p[kMaxKnots];
     space_.densities(node.path, -path.direction, in, {p, knots()});
-    double sum = 0;
-    for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * p[k];
-    return 4 * kPi * *std::max_element(path.throughput, path.throughput + knots()) * sum;
+    return 4 * kPi * *std::max_element(path.throughput, path.throughput + knots()) * path.relative.mean(P(), p);
   }
   return 0;
 }
@@ -126,16 +122,13 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_side(const NodeA
     space_.densities(node.path, -side_toward_, path.direction, {g, knots()});
     const double own = g[from.knot];
     if (!(own > 0)) return false;
-    double shares = 0, others = 0, brightest = 0;
-    for (size_t k = 0; k < knots(); ++k) {
-      path.relative[k] = from.relative[k] * g[k] / own, path.other[k] = from.relative[k] * p[k] / own;
-      shares += probability_[k] * path.relative[k], others += probability_[k] * path.other[k];
-      brightest = std::max(brightest, from.throughput[k]);
-    }
+    path.relative.set(knots(), from.relative, g, own), path.other.set(knots(), from.relative, p, own);
+    const double shares = path.relative.mean(P()), others = path.other.mean(P()),
+                 brightest = std::max(0.0, *std::max_element(from.throughput, from.throughput + knots()));
     const double brings = 4 * kPi * brightest * own * shares * others / (shares + others);
     const double survives = std::min(tried, std::clamp(brings / kSideCarries, kSideLeast, 1.0));
     if (!(brings > 0) || u[3] * tried >= survives) return false;
-    for (size_t k = 0; k < knots(); ++k) path.relative[k] /= shares, path.other[k] /= shares;
+    path.relative.divide(knots(), shares), path.other.divide(knots(), shares);
     path.origin = space_.place(node.path);
     path.branch = Branch::none, path.sided = true;
     side.node = static_cast<uint32_t>(&node - nodes_.data());
@@ -219,11 +212,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_aside(const Side
       // As for the path's own way, which shares with what meets the light by chance.
       float density[kMaxKnots];
       space_.densities(event, -path.direction, sample.direction, {density, knots()});
-      double by_chance = 0, others = 0;
-      for (size_t k = 0; k < knots(); ++k) {
-        others += probability_[k] * path.other[k];
-        by_chance += probability_[k] * path.other[k] * density[k] * reach[k];
-      }
+      const double others = path.other.mean(P()), by_chance = path.other.mean(P(), density, {reach, knots()});
       denominator = Estimator::asked(sample.density, others > 0 ? by_chance / others : 0, side_light_->nature.disk);
     }
     const std::span<float> memory = dense(p, 2);

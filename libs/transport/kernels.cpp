@@ -4,6 +4,7 @@
 #include "transport/kernel_back.h"
 #include "transport/kernel_branch.h"
 #include "transport/kernel_chain.h"
+#include "transport/kernel_claims.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_gloss.h"
 #include "transport/kernel_go_on.h"

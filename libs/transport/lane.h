@@ -8,6 +8,8 @@
 #include "optics/scatter_model.h"
 #include "surface/surface.h"
 #include "transport/contribution.h"
+#include "transport/path/claims.h"
+#include "transport/path/hero.h"
 
 namespace suite {
 
@@ -27,31 +29,19 @@ struct Lane {
   uint32_t draw = 0;  // Ray::draw
   Vec3 origin;        // of the next segment
   Dir direction;
-  double time = 0;          // s
-  std::array<double, 4> u;  // numbers of the current node
-  double length = 0;        // m so far
-  double arrival = 0;       // m so far, times the index of refraction
-  double relative[K];       // r_k (shares.h)
-  double throughput[K];     // at the knots, for roulette
-  double before = 1;        // A before the last event over A after it
+  double time = 0;            // s
+  std::array<double, 4> u;    // numbers of the current node
+  double length = 0;          // m so far
+  double arrival = 0;         // m so far, times the index of refraction
+  HeroDensities<K> relative;  // r_k (shares.h)
+  double throughput[K];       // at the knots, for roulette
+  double before = 1;          // A before the last event over A after it
   // r_k, with the density of the other way in which the last event's branches draw a scattering (kernel_branch.h).
   // Or that of a side flight having come from the last event to here (kernel_side.h), where `sided`.
-  double other[K];
+  HeroDensities<K> other;
   Branch branch = Branch::none;
   bool sided = false;
-  // What its last surface has asked for along chains (kernel_chain.h) is not asked for again: which knots' ways, a bit
-  // for each, of which light, up to how many scatterings more, on flights of how many m.
-  uint32_t quiet = 0;
-  uint16_t quiet_light = 0;
-  uint16_t quiet_events = 0;
-  double quiet_reach = 0;
-  double passed = 0;  // m from its last node to `origin`, boundaries of media on the way
-  // The same of the light of the air's sky that comes by one smooth interface.
-  enum class Sky : uint8_t {
-    open,
-    asked,  // and nothing but scattered since
-    behind  // that interface, on the way that was asked along
-  } sky = Sky::open;
+  PathClaims claims;
   double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
   int knot = 0;              // whose shapes draw this path
   double share = 1;          // of a path's light, where it goes on in parts
@@ -61,9 +51,6 @@ struct Lane {
   uint8_t events = 0;        // EventKind so far
   uint8_t received = 0;      // 1: starts at a receiver
   WaterSeen water = WaterSeen::nothing;
-  uint8_t bends = kUnasked;  // smooth interfaces met since it last asked for light through them
-  // It never did, or the first of them reflected, or something else happened since.
-  static constexpr uint8_t kUnasked = 0xff;
   uint32_t order() const { return surfaces + scatterings; }
 };
 

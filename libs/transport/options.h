@@ -30,6 +30,7 @@ struct PipelineOptions {
   int roulette_after = 3;         // events before paths may end by chance
   bool explicit_sources = true;   // ask lights at every node (off only for comparisons)
   bool refracted_sources = true;  // ask lights through smooth interfaces, too (refracted_sight.h)
+  bool volume_chains = true;      // and along chains of scatterings (kernel_chain.h; off for comparisons)
   bool side_flights = true;       // flights aside in media that scatter forwards (kernel_side.h; off for comparisons)
   // Photons that look for light which glossy surfaces throw (gloss_photons.h); 0: none, and nobody is guided there.
   uint32_t gloss_photons = 32768;

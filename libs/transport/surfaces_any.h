@@ -21,7 +21,6 @@ struct Continuation {
   // Of an event that two branches leave: which of them this is, and the other one's density of going there.
   Branch branch = Branch::none;
   bool sided = false;  // `other` is the density of a side flight (kernel_side.h)
-  bool heard = false;  // the sky's light from there has been asked for (kernel_chain.h)
   float other[kMaxKnots];
 };
 

@@ -187,7 +187,7 @@ void Flights::media_emission() {
 void Flights::set_places(const LivePath& live, double share) {
   mean_ = {};
   for (size_t k = 0; k < knots_.size(); ++k) {
-    knots_[k] = {probability_[k] * live.relative[k], scattering_depth(bins_of_knots_[k]), 0};
+    knots_[k] = {live.relative.part(probability_, k), scattering_depth(bins_of_knots_[k]), 0};
     for (const Constituent& c : run_)
       knots_[k].within += c.density * double{media_[c.medium].scattering[bins_of_knots_[k]]};
   }
@@ -274,7 +274,6 @@ double Flights::combined(const LivePath& live, size_t k, bool scattered) const {
 double Flights::join_knots(LivePath& live, bool scattered, double own_rate) {
   const size_t knots = bins_of_knots_.size();
   const double own = scattering_depth(bins_of_knots_[static_cast<size_t>(live.knot)]);
-  double shares = 0;
   for (size_t k = 0; k < knots; ++k) {
     double rate = own_rate;
     if (scattered) {
@@ -285,10 +284,10 @@ double Flights::join_knots(LivePath& live, bool scattered, double own_rate) {
     const double way = std::exp(own - scattering_depth(bins_of_knots_[k])) * (rate / own_rate);
     live.relative[k] = combined(live, k, scattered) * way;
     if (live.sided) live.other[k] *= way;
-    shares += probability_[k] * live.relative[k];
   }
-  for (size_t k = 0; k < knots; ++k) live.relative[k] /= shares;
-  for (size_t k = 0; live.sided && k < knots; ++k) live.other[k] /= shares;
+  const double shares = live.relative.mean(probability_);
+  live.relative.divide(knots, shares);
+  if (live.sided) live.other.divide(knots, shares);
   live.before /= shares;
   return shares;
 }

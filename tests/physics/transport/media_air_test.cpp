@@ -225,7 +225,7 @@ Brought by_flights(const Scene& scene, const Optics& optics, const Atmosphere& a
     for (size_t k = 0; k < knots; ++k) {
       LivePath live;
       live.origin = ray.origin, live.direction = ray.direction;
-      std::fill_n(live.relative, knots, 1.0);
+      live.relative.start(knots);
       std::fill_n(live.throughput, knots, 1.0);
       live.knot = static_cast<int>(k);
       const double u = random.uniform(), v = random.uniform();

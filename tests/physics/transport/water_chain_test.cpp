@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "air/air_spec.h"
 #include "scheduler/shortfall.h"
@@ -48,6 +49,7 @@ struct Bay {
   bool upright = false;  // the surface faces the horizon
   bool layers = false;   // murkier from 1 to 2.5 m, dark below
   bool haze = false;     // a body of it over the water
+  bool mirrors = false;  // half of the bed
 };
 
 // Media that nothing parts from what is above but their boundaries.
@@ -73,6 +75,21 @@ void add_haze(Scene& scene) {
   place(scene, PrimitiveKind::box, {-20, -20, 5, 20, 20, 8}, static_cast<uint32_t>(scene.materials.size()) - 1);
 }
 
+// The bed, material 0, becomes a mixture.
+void add_mirrors(Scene& scene) {
+  PropertyMap shares;
+  shares.name = "shares", shares.width = shares.height = 1, shares.channels = 2;
+  shares.values = {0.5f, 0.5f};
+  for (const Material& part :
+       {material("white", lambert(0.3)),
+        material("mirror", {"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr})}) {
+    shares.materials.push_back(static_cast<uint32_t>(scene.materials.size()));
+    scene.materials.push_back(part);
+  }
+  scene.property_maps = {shares};
+  scene.property_bindings = {{0, 0}};
+}
+
 // ball: nobody knows how many ways there are.
 std::shared_ptr<Scene> scene_with(const Bay& bay, bool ball = false) {
   auto scene = std::make_shared<Scene>();
@@ -92,6 +109,7 @@ std::shared_ptr<Scene> scene_with(const Bay& bay, bool ball = false) {
   }
   if (bay.layers) add_layers(*scene, bay);
   if (bay.haze) add_haze(*scene);
+  if (bay.mirrors) add_mirrors(*scene);
   if (bay.upright)
     for (Placement& p : scene->groups[0].placements) p.to_parent = kUpright * p.to_parent;
   if (ball) place(*scene, PrimitiveKind::sphere, {0.1}, 2, translation({3e4, 0, 3}));
@@ -164,34 +182,60 @@ TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
   }
 }
 
-// The sun itself, so wide that chance finds it often: with a bed, which asks along chains, and without one, where only
-// the water's own scatterings ask.
+// Under suns alone. asked: they are, through the surface.
+Repeated look_up(const Bay& bay, std::span<const SunSpec> suns, bool asked, uint32_t paths) {
+  SourceSpecs sources;
+  for (const SunSpec& sun : suns) sources.add(sun);
+  PipelineOptions options;
+  options.refracted_sources = asked;
+  const Dir view = dir_from_angles(25 * kDegree, 2);
+  const std::vector<Band> blue{Band::rectangular("blue", 0.45, 0.002)};
+  auto r = render(scene_with(bay), sources,
+                  std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02), options);
+  return over_problems(r.result, 0);
+}
+SunSpec sun_of(double azimuth, double half_angle_deg) {
+  return {dir_from_angles(40 * kDegree, azimuth), half_angle_deg * kDegree, Curve::constant(1)};
+}
+
+// The sun itself, so wide that chance finds it often: with a bed, which asks along chains; without one, where only the
+// water's own scatterings ask; and with a bed that mirrors in part: what it mirrors it asks for nowhere.
 TEST(WaterChain, FindsOfTheSunWhatChanceFinds) {
-  const auto look_up = [](const Bay& bay, bool asked, uint32_t paths) {
-    SourceSpecs sources;
-    sources.add(SunSpec{dir_from_angles(40 * kDegree, 0.3), 20 * kDegree, Curve::constant(1)});
-    PipelineOptions options;
-    options.refracted_sources = asked;
-    const Dir view = dir_from_angles(25 * kDegree, 2);
-    const std::vector<Band> blue{Band::rectangular("blue", 0.45, 0.002)};
-    auto r = render(scene_with(bay), sources,
-                    std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02), options);
-    return over_problems(r.result, 0);
-  };
+  const SunSpec wide[] = {sun_of(0.3, 20)};
   // Seen once of 4096 times the paths asked for, 16 times those by chance: -0.08 % +- 0.07 with, +0.7 % +- 0.5 without.
   const uint32_t times = std::getenv("SUITE_LONG") ? 16 : 1;
-  for (const bool bed : {true, false}) {
-    const Repeated asked = look_up({.bed = bed}, true, 384 * times),
-                   chance = look_up({.bed = bed}, false, 16384 * times);
+  const struct {
+    const char* name;
+    Bay bay;
+    uint32_t paths;
+    double bound;
+  } cases[] = {{"bed", {}, 384, 0.01},
+               {"black bed", {.bed = false}, 384, 0.05},
+               {"bed that mirrors", {.mirrors = true}, 1024, 0.01}};
+  for (const auto& c : cases) {
+    const Repeated asked = look_up(c.bay, wide, true, c.paths * times),
+                   chance = look_up(c.bay, wide, false, 16384 * times);
     const double error = std::hypot(asked.error, chance.error);
-    print(bed ? "bed" : "black bed", asked, chance);
+    print(c.name, asked, chance);
     EXPECT_NEAR(asked.mean, chance.mean, 3.5 * error);
-    EXPECT_LT(error, (bed ? 0.01 : 0.05) * chance.mean);
-    if (!bed) continue;
+    EXPECT_LT(error, c.bound * chance.mean);
+    if (!c.bay.bed || c.bay.mirrors) continue;
     // Negative control: water that absorbs a tenth more.
-    const Repeated darker = look_up({.absorption = 0.055}, true, 256);
+    const Repeated darker = look_up({.absorption = 0.055}, wide, true, 256);
     EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error));
   }
+}
+
+// Chains look for one of two suns, and claim that one's light alone.
+TEST(WaterChain, LightOfTwoSunsAddsUp) {
+  const SunSpec suns[] = {sun_of(0.3, 0.27), sun_of(2.5, 0.27)};
+  const std::span<const SunSpec> both(suns);
+  const Repeated one = look_up({}, both.first(1), true, 192), other = look_up({}, both.last(1), true, 192),
+                 all = look_up({}, both, true, 192);
+  const double error = std::hypot(all.error, one.error, other.error);
+  std::printf("%.5g + %.5g, together %.5g, +- %.2f %%\n", one.mean, other.mean, all.mean, 100 * error / all.mean);
+  EXPECT_NEAR(all.mean, one.mean + other.mean, 3.5 * error);  // p = 5e-4
+  EXPECT_LT(error, 0.01 * all.mean);                          // negative control: what is counted twice is 0.2 or more
 }
 
 // What leaves water beside its surface is told; nothing is where planes go on for ever.
