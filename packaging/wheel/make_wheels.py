@@ -26,10 +26,12 @@ COMPILED_IN = {"remote-scenes": ["libcli11-dev", "nlohmann-json3-dev", "libtinyg
 """Debian packages of which code is in the binaries themselves."""
 
 
-def run(*command: str | Path, **more: object) -> None:
+def run(*command: str | Path, **more: object) -> str:
+    """What the command prints; its failure ends the program."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True, **more)  # type: ignore[call-overload]
     if done.returncode:
         sys.exit(f"make_wheels: {' '.join(map(str, command))}:\n{done.stdout}{done.stderr}")
+    return done.stdout
 
 
 def unpack(wheel: Path, into: Path) -> Path:
@@ -100,12 +102,17 @@ def combined(tree: Path, work: Path) -> Path:
     return wheel
 
 
-def repaired(wheel: Path, libraries: list[Path], work: Path) -> Path:
-    """Every library outside of the policy bundled; auditwheel fails where one cannot be."""
+def repaired(wheel: Path, libraries: list[Path], work: Path, report: Path) -> Path:
+    """Every library outside of the policy bundled; auditwheel fails where one cannot be. `report`: what it says of the result."""
     paths = os.pathsep.join(str(p.resolve()) for p in libraries)
-    run(sys.executable, "-m", "auditwheel", "repair", "--strip", "--zip-compression-level", "0", "--plat", PLATFORM, "--only-plat", "-w", work / "repaired", wheel,
+    # x86-64-v3 is asked for on purpose: programs and library say on a lesser processor what it lacks.
+    run(sys.executable, "-m", "auditwheel", "repair", "--strip", "--disable-isa-ext-check", "--zip-compression-level", "0", "--plat", PLATFORM, "--only-plat", "-w", work / "repaired", wheel,
         env={**os.environ, "LD_LIBRARY_PATH": paths})
-    return next((work / "repaired").glob("*.whl"))
+    wheel = next((work / "repaired").glob("*.whl"))
+    # Of the whole: each part refers to libraries in the other.
+    told = run(sys.executable, "-m", "auditwheel", "show", "--disable-isa-ext-check", wheel)
+    report.write_text(told.strip() + "\n", encoding="utf-8")
+    return wheel
 
 
 def package_of(library: str) -> str | None:
@@ -203,7 +210,7 @@ def main() -> None:
     given = options.parse_args()
     with tempfile.TemporaryDirectory(dir=given.tree.parent) as folder:
         work = Path(folder)
-        for each in part(repaired(combined(given.tree, work), given.libraries, work), given.openimageio_licenses, work):
+        for each in part(repaired(combined(given.tree, work), given.libraries, work, given.tree.parent / "auditwheel.txt"), given.openimageio_licenses, work):
             run(sys.executable, "-m", "wheel", "pack", each, "-d", given.out)
 
 
