@@ -179,7 +179,7 @@ double apart(const std::vector<double>& p, size_t g, size_t h) {
 // Drops a pulse that is none, or joins two that are one; false when all may stay.
 bool tidy(std::vector<double>& p, const DecomposeSpec& spec, double samples) {
   for (size_t g = 0; 1 + 3 * g < p.size(); ++g) {
-    if (p[1 + 3 * g] < 0.5 * spec.least_amplitude || p[2 + 3 * g] < 0 || p[2 + 3 * g] > samples - 1) {
+    if (p[1 + 3 * g] < spec.least_amplitude || p[2 + 3 * g] < 0 || p[2 + 3 * g] > samples - 1) {
       leave_out(p, g);
       return true;
     }

@@ -3,11 +3,10 @@
 //
 // Seeds stand at maxima and where the second derivative has its minima (a shoulder has no maximum: two equal Gaussians
 // have two maxima only when more than two deviations apart). Pulses nearer than half a FWHM are one. One more pulse
-// must lower chi-square (of counts: twice the lack of log-likelihood) by 16.27, the 99.9 % quantile of three parameters;
-// else the nearest two are joined, or the weakest is left out.
-// Based on: W. Wagner et al., "Gaussian decomposition and calibration of a novel small-footprint full-waveform
-// digitising airborne laser scanner", ISPRS J. 60, 2006; D. W. Marquardt, J. SIAM 11, 1963; A. Dempster, N. Laird, D.
-// Rubin, J. R. Stat. Soc. B 39, 1977 for EM.
+// must lower chi-square (of counts: twice the lack of log-likelihood) by 16.27, the 99.9 % quantile of three
+// parameters; else the nearest two are joined, or the weakest is left out. Based on: W. Wagner et al., "Gaussian
+// decomposition and calibration of a novel small-footprint full-waveform digitising airborne laser scanner", ISPRS J.
+// 60, 2006; D. W. Marquardt, J. SIAM 11, 1963; A. Dempster, N. Laird, D. Rubin, J. R. Stat. Soc. B 39, 1977 for EM.
 #pragma once
 #include <array>
 #include <vector>
@@ -31,7 +30,7 @@ struct Decomposition {
 
 struct DecomposeSpec {
   double least_width = 0;      // s, the system's: no narrower pulse is told
-  double least_amplitude = 0;  // of seeds, above the baseline, > 0
+  double least_amplitude = 0;  // above the baseline, > 0
   size_t most = 32;            // pulses, at most 64
   int steps = 100;
 };

@@ -16,7 +16,6 @@ FrontEnd read_front_end(const Params& p) {
     throw p.error("excess_noise and ionisation_ratio say the same", "one of them");
   f.excess = p.number_in("excess_noise", 1, 1e4, "", 1);
   if (const auto k = p.find("ionisation_ratio")) f.excess = excess_noise(k->as_number_in(0, 1, ""), f.gain);
-  f.amplifier_noise = p.number_in("amplifier_noise_e", 0, 1e9, "electrons", 0);
   f.receiver_fwhm = p.number_in("receiver_fwhm_ns", 0, 1e6, "ns", 0) * 1e-9;
   return f;
 }
@@ -56,28 +55,33 @@ Voltage pass(const FrontEnd& f, const Expected& e, Pcg32& random) {
   const size_t n = e.grid.count;
   Voltage v;
   v.grid = e.grid, v.level = e.background * f.gain;
-  std::vector<double> mean(n), spread(n), electrons(n), paths(n);
+  std::vector<double> mean(n), spread(n), electrons(n), paths(n), white(n, 0);
   for (size_t k = 0; k < n; ++k) {
     const double primaries = e.signal[k] + e.background;
     mean[k] = e.signal[k] * f.gain;
     spread[k] = primaries * f.gain * f.gain * f.excess;
     paths[k] = e.variance[k] * f.gain * f.gain;
     // Background is even: only what differs from it is passed through the filter, so that the ends have none.
+    if (f.amplifier_noise > 0) white[k] = normal(random);
     electrons[k] = avalanche(poisson(primaries, random), f.gain, f.excess, random) - v.level;
   }
   v.signal = filtered(mean, answer, false);
   v.noisy = filtered(electrons, answer, false);
   const std::vector<double> squares = filtered(spread, answer, true), errors = filtered(paths, answer, true);
+  double power = 0;  // of white noise that the receiver lets through
+  for (const double s : answer) power += s * s;
+  v.correlation = 1 / power;
+  const std::vector<double> amplifier = filtered(white, answer, false);
   for (size_t k = 0; k < n; ++k) {
     v.ideal.push_back(v.signal[k] + v.level);
     v.error.push_back(std::sqrt(errors[k]));
     v.noise.push_back(std::sqrt(squares[k] + f.amplifier_noise * f.amplifier_noise));
-    v.noisy[k] += v.level + (f.amplifier_noise > 0 ? f.amplifier_noise * normal(random) : 0);
+    v.noisy[k] += v.level + f.amplifier_noise * amplifier[k] / std::sqrt(power);
   }
   return v;
 }
 
-Discriminator read_discriminator(const Params& params, const char* unit, double width) {
+Discriminator read_discriminator(const Params& params, const char* unit, double scale, double width) {
   Discriminator d;
   const auto p = params.find("returns");
   if (!p) return d;
@@ -86,7 +90,8 @@ Discriminator read_discriminator(const Params& params, const char* unit, double 
   d.by = kinds[p->at("by").as_choice({"none", "threshold", "constant_fraction", "gaussian"})];
   if (d.by == Discriminator::By::none) return d;
   const std::string level = std::string("threshold_") + unit, hysteresis = std::string("hysteresis_") + unit;
-  d.threshold.level = p->number_in(level, 1e-9, 1e15, unit);
+  const double asked = p->number_in(level, 1e-9, 1e15, unit);
+  d.threshold.level = asked * scale;
   d.threshold.most =
       static_cast<size_t>(p->integer("most", 1, 65535, d.by == Discriminator::By::gaussian ? 32 : 65535));
   if (d.by == Discriminator::By::gaussian) {
@@ -95,7 +100,7 @@ Discriminator read_discriminator(const Params& params, const char* unit, double 
     d.decompose.least_width = width * p->number_in("least_width", 0.5, 10, "of the system's width", 0.9);
     return d;
   }
-  d.threshold.hysteresis = p->number_in(hysteresis, 0, d.threshold.level, unit, 0);
+  d.threshold.hysteresis = p->number_in(hysteresis, 0, asked, unit, 0) * scale;
   d.threshold.dead = p->number_in("dead_time_ns", 0, 1e9, "ns", 0) * 1e-9;
   if (d.by != Discriminator::By::constant_fraction) return d;
   d.fraction = p->number_in("fraction", 0.01, 0.99, "");

@@ -13,7 +13,8 @@ struct FrontEnd {
   double amplifier_noise = 0;  // electrons behind the avalanche, standard deviation of a sample
   double receiver_fwhm = 0;    // s, of the answer to one electron
 };
-// Keys quantum_efficiency, dark_rate_hz, gain, excess_noise | ionisation_ratio, amplifier_noise_e, receiver_fwhm_ns.
+// Keys quantum_efficiency, dark_rate_hz, gain, excess_noise | ionisation_ratio, receiver_fwhm_ns. The caller adds the
+// amplifier.
 FrontEnd read_front_end(const Params& params);
 
 // Electrons behind the avalanche in each sample. ideal: the mean of `noisy`; error: of ideal by the paths of the
@@ -23,6 +24,9 @@ struct Voltage {
   std::vector<double> ideal, error, noise, noisy;
   std::vector<double> signal;  // the laser's part of ideal
   double level = 0;            // of ideal where there is background alone
+  // Noise of neighbouring samples is correlated by the receiver. Sums over many samples have this times the variance of
+  // independent ones: (sum w)^2 / sum w^2 of its shares w.
+  double correlation = 1;
 };
 Voltage pass(const FrontEnd& front, const Expected& expected, Pcg32& random);
 
@@ -33,9 +37,9 @@ struct Discriminator {
   double fraction = 0.5, delay = 0;
   DecomposeSpec decompose;
 };
-// unit: of levels, "e" or "dn": keys threshold_UNIT, hysteresis_UNIT. width: s, standard deviation of the system's
-// answer to an impulse.
-Discriminator read_discriminator(const Params& params, const char* unit, double width);
+// Keys threshold_UNIT, hysteresis_UNIT, which become the unit's multiples of `scale`. width: s, standard deviation of
+// the system's answer to an impulse.
+Discriminator read_discriminator(const Params& params, const char* unit, double scale, double width);
 // values: above the baseline. noise: of each sample.
 std::vector<LidarReturn> tell_returns(const Discriminator& d, std::span<const double> values,
                                       std::span<const double> noise, const SampleGrid& grid);

@@ -13,10 +13,13 @@ class LinearDetector : public LidarDetector {
       : pulse_(pulse), front_(read_front_end(p)), fwhm_(std::hypot(pulse.fwhm(), front_.receiver_fwhm)) {
     if (!(fwhm_ > 0)) throw p.error("an impulse through a receiver without a width has no edge", "receiver_fwhm_ns: 1");
     step_ = p.number_in("step_ns", 1e-4, 1e5, "ns", fwhm_ * 1e9 / 10) * 1e-9;
+    // Levels are currents: what they mean does not depend on the step.
+    front_.amplifier_noise = p.number_in("amplifier_noise_e_per_ns", 0, 1e12, "electrons/ns", 0) * step_ * 1e9;
     const double deviation = std::hypot(pulse.deviation(), front_.receiver_fwhm / kFwhmOfDeviation);
-    discriminator_ = read_discriminator(p, "e", deviation);
+    discriminator_ = read_discriminator(p, "e_per_ns", step_ * 1e9, deviation);
     if (discriminator_.by == Discriminator::By::none)
-      throw p.error("a linear detector without returns records nothing", "returns: {by: threshold, threshold_e: 50}");
+      throw p.error("a linear detector without returns records nothing",
+                    "returns: {by: threshold, threshold_e_per_ns: 50}");
   }
   std::string sample_unit() const override { return {}; }
   bool counts_photons() const override { return false; }
@@ -40,8 +43,9 @@ class LinearDetector : public LidarDetector {
   std::vector<LidarReturn> tell(std::vector<double> values, const Voltage& v) const {
     for (double& x : values) x -= v.level;
     std::vector<double> noise = v.noise;
-    for (double& n : noise) n = std::max(n, 1e-6);
+    for (double& n : noise) n = std::max(n * std::sqrt(v.correlation), 1e-6);
     std::vector<LidarReturn> returns = tell_returns(discriminator_, values, noise, v.grid);
+    for (LidarReturn& r : returns) r.amplitude /= step_ * 1e9, r.baseline /= step_ * 1e9;
     mark_signal(returns, v, fwhm_);
     return returns;
   }

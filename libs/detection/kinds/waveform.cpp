@@ -12,13 +12,14 @@ class WaveformDetector : public LidarDetector {
  public:
   WaveformDetector(const Params& p, const PulseShape& pulse)
       : pulse_(pulse), front_(read_front_end(p)), fwhm_(std::hypot(pulse.fwhm(), front_.receiver_fwhm)) {
+    front_.amplifier_noise = p.number_in("amplifier_noise_e", 0, 1e9, "electrons of a sample", 0);
     step_ = p.number_in("sample_ns", 1e-4, 1e5, "ns") * 1e-9;
     electrons_ = p.number_in("gain_e_per_dn", 1e-9, 1e12, "electrons a count");
     offset_ = p.number_in("offset_dn", 0, 65535, "counts", 0);
     full_ = static_cast<double>((1LL << p.integer("bits", 1, 16)) - 1);
     recovery_ = p.number_in("recovery_ns", 0, 1e6, "ns", 0) * 1e-9;
     const double deviation = std::hypot(pulse.deviation(), front_.receiver_fwhm / kFwhmOfDeviation);
-    discriminator_ = read_discriminator(p, "dn", std::hypot(deviation, step_ / std::sqrt(12.0)));
+    discriminator_ = read_discriminator(p, "dn", 1, std::hypot(deviation, step_ / std::sqrt(12.0)));
   }
   std::string sample_unit() const override { return "counts"; }
   bool counts_photons() const override { return false; }
@@ -49,7 +50,7 @@ class WaveformDetector : public LidarDetector {
       r.ideal_samples.push_back(offset_ + v.ideal[k] / electrons_);
       r.ideal_errors.push_back(v.error[k] / electrons_);
       above[k] = r.samples[k] - base, ideal[k] = r.ideal_samples[k] - base;
-      noise[k] = std::hypot(v.noise[k] / electrons_, 1 / std::sqrt(12.0));
+      noise[k] = std::hypot(v.noise[k] * std::sqrt(v.correlation) / electrons_, 1 / std::sqrt(12.0));
     }
     r.returns = tell_returns(discriminator_, above, noise, v.grid);
     r.ideal_returns = tell_returns(discriminator_, ideal, noise, v.grid);

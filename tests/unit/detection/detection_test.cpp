@@ -19,8 +19,8 @@ pulse: {kind: gaussian, fwhm_ns: 2}
 detectors:
   - {kind: waveform, name: full, quantum_efficiency: 0.8, gain: 50, ionisation_ratio: 0.02, amplifier_noise_e: 80, receiver_fwhm_ns: 1,
      sample_ns: 0.5, bits: 12, gain_e_per_dn: 10, offset_dn: 100, returns: {by: gaussian, threshold_dn: 40}}
-  - {kind: linear, name: edge, quantum_efficiency: 0.8, gain: 50, excess_noise: 3, amplifier_noise_e: 200, receiver_fwhm_ns: 1,
-     returns: {by: threshold, threshold_e: 3000, hysteresis_e: 500}}
+  - {kind: linear, name: edge, quantum_efficiency: 0.8, gain: 50, excess_noise: 3, amplifier_noise_e_per_ns: 80, receiver_fwhm_ns: 1,
+     returns: {by: threshold, threshold_e_per_ns: 3000, hysteresis_e_per_ns: 1000}}
   - {kind: geiger, name: frames, mode: framed, detection_efficiency: 0.3, dark_rate_hz: 2.0e4}
   - {kind: photon_counting, name: photons, detection_efficiency: 0.3, pixels_per_spot: 16, dead_time_ns: 3}
 )";
@@ -59,7 +59,7 @@ Seen run(const DetectionSpec& spec, size_t block, size_t pulses, double photons 
 TEST(Detection, EveryKindFindsRoofAndGround) {
   const DetectionSpec spec = spec_of(kAll);
   constexpr size_t kPulses = 60;
-  const Seen seen = run(spec, 7, kPulses);
+  const Seen seen = run(spec, 7, kPulses, 2000);
   const double roof = 10.05e-9, ground = 50.05e-9;
   ASSERT_EQ(seen.times[0].size(), 2 * kPulses);  // Gaussians
   RunningStats first, second;
@@ -68,10 +68,13 @@ TEST(Detection, EveryKindFindsRoofAndGround) {
   EXPECT_NEAR(second.mean(), ground, 4 * second.stderr_of_mean());
   ASSERT_EQ(seen.times[1].size(), 2 * kPulses);  // edges come before their peaks
   EXPECT_LT(seen.times[1][1], ground);
+  // -sigma sqrt(2 ln(A / level)), peak A of 60 000 e through a FWHM of sqrt(5) ns.
+  const double sigma = std::sqrt(5.0) / kFwhmOfDeviation, peak = 60000 / (sigma * std::sqrt(2 * kPi));
+  EXPECT_NEAR((seen.ideal[1][1] - ground) * 1e9, -sigma * std::sqrt(2 * std::log(peak / 3000)), 6e-3);
   EXPECT_NEAR(seen.ideal[0][0], roof, 2e-12);
   EXPECT_NEAR(seen.ideal[0][1], ground, 2e-12);
   EXPECT_LE(seen.times[2].size(), kPulses);       // one count a gate
-  EXPECT_GT(seen.times[3].size(), 20 * kPulses);  // of 120 primaries
+  EXPECT_GT(seen.times[3].size(), 20 * kPulses);  // of 600 primaries
   // Noise is about the ideal: 4 sigma, and not about 1 % beside it.
   EXPECT_NEAR(seen.sums[0].mean(), 0, 4 * seen.sums[0].stderr_of_mean());
 }
@@ -157,7 +160,7 @@ TEST(Detection, WhatIsRefused) {
               HasSubstr("d.yaml:1:58: error: unknown kind of detector 'gieger'; did you mean 'geiger'?"));
   EXPECT_THAT(message("{pulse: {kind: gauss, fwhm_ns: 2}, detectors: []}"), HasSubstr("d.yaml:1:16"));
   EXPECT_THAT(message("{pulse: {kind: impulse}, detectors: [{kind: linear, quantum_efficiency: 1, returns: {by: "
-                      "threshold, threshold_e: 5}}]}"),
+                      "threshold, threshold_e_per_ns: 5}}]}"),
               HasSubstr("without a width has no edge"));
   EXPECT_THAT(message("{pulse: {kind: impulse}, detectors: [{kind: geiger, mode: framed, detection_efficiency: 1, "
                       "dead_time_ns: 5}]}"),
