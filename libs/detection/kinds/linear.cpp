@@ -12,7 +12,7 @@ class LinearDetector : public LidarDetector {
   LinearDetector(const Params& p, const PulseShape& pulse)
       : pulse_(pulse), front_(read_front_end(p)), fwhm_(std::hypot(pulse.fwhm(), front_.receiver_fwhm)) {
     if (!(fwhm_ > 0)) throw p.error("an impulse through a receiver without a width has no edge", "receiver_fwhm_ns: 1");
-    step_ = p.number_in("step_ns", 1e-4, 1e5, "ns", fwhm_ * 1e9 / 10) * 1e-9;
+    step_ = p.number_in("step_ns", 1e-4, 1e5, "ns", fwhm_ * 1e9 / 20) * 1e-9;
     // Levels are currents: what they mean does not depend on the step.
     front_.amplifier_noise = p.number_in("amplifier_noise_e_per_ns", 0, 1e12, "electrons/ns", 0) * step_ * 1e9;
     const double deviation = std::hypot(pulse.deviation(), front_.receiver_fwhm / kFwhmOfDeviation);
