@@ -163,6 +163,7 @@ void LasWriter::finish() {
       from.read_at(at, piece);
       o.file.write(piece);
     }
+    o.packets.reset();
   }
   const std::string head = header(o.spec, o.totals);
   o.file.write_at(0, std::as_bytes(std::span(head)));
