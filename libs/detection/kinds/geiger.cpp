@@ -32,7 +32,7 @@ class GeigerDetector : public LidarDetector {
 
  private:
   void tell_ideal(const Expected& e, PixelRecord& r) const {
-    r.grid = e.grid;
+    r.grid = e.grid, r.background_rate = e.background / e.grid.step;
     if (!framed_) {
       r.ideal_samples = e.signal;
       for (double& n : r.ideal_samples) n += e.background;

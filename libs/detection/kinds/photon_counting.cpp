@@ -29,7 +29,7 @@ class PhotonCounting : public LidarDetector {
       Pcg32 random = stream_of(key, 0, light.pulse, spot);
       PixelRecord& r = records[spot];
       add_clicks({&r, 1}, count_primaries(counting_, shared, pixels_, random), pixels_);
-      r.grid = grid;
+      r.grid = grid, r.level = whole.background, r.background_rate = whole.background / grid.step;
       r.ideal_samples = std::move(whole.signal);
       for (double& n : r.ideal_samples) n += whole.background;
     }

@@ -52,6 +52,8 @@ class WaveformDetector : public LidarDetector {
       above[k] = r.samples[k] - base, ideal[k] = r.ideal_samples[k] - base;
       noise[k] = std::hypot(v.noise[k] * std::sqrt(v.correlation) / electrons_, 1 / std::sqrt(12.0));
     }
+    r.level = base;
+    r.level_noise = std::hypot(*std::min_element(v.noise.begin(), v.noise.end()) / electrons_, 1 / std::sqrt(12.0));
     r.returns = tell_returns(discriminator_, above, noise, v.grid);
     r.ideal_returns = tell_returns(discriminator_, ideal, noise, v.grid);
     mark_signal(r.returns, v, fwhm_), mark_signal(r.ideal_returns, v, fwhm_);
