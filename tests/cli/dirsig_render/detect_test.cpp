@@ -88,8 +88,8 @@ TEST_F(Detect, PointsWaveformsAndPhotons) {
 // The same seed gives the same bytes, another seed other ones; a .bin of its own photons is detected again.
 TEST_F(Detect, SeedsAndPhotonsOfDirsig) {
   ASSERT_EQ(run("--detect r.h5 d.yaml -o out -q").code, 0);
-  ASSERT_EQ(run("--detect r.h5 d.yaml -o again -q --set output=las").code, 0);
-  ASSERT_EQ(run("--detect r.h5 d.yaml -o other -q --seed 9 --set output=las").code, 0);
+  ASSERT_EQ(run("--detect r.h5 d.yaml -o again -q --set output=las --set csv=null").code, 0);
+  ASSERT_EQ(run("--detect r.h5 d.yaml -o other -q --seed 9 --set output=las --set csv=null").code, 0);
   const auto frames = [&](const std::string& from) {
     std::vector<std::byte> bytes = read_bytes(folder_ / (from + "/frames.las"));
     std::fill(bytes.begin() + 58, bytes.begin() + 90, std::byte{0});  // the command line
@@ -97,7 +97,7 @@ TEST_F(Detect, SeedsAndPhotonsOfDirsig) {
   };
   EXPECT_EQ(frames("out"), frames("again"));
   EXPECT_NE(frames("out"), frames("other"));
-  const CommandResult r = run("--detect out/photons.bin d.yaml -o bin --set output=las");
+  const CommandResult r = run("--detect out/photons.bin d.yaml -o bin --set output=las --set csv=null");
   ASSERT_EQ(r.code, 0) << r.err;
   Report report(scene_issues());
   const PointCloud a = read_las(folder_ / "out/full.las", report), b = read_las(folder_ / "bin/full.las", report);
