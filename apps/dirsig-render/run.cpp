@@ -166,7 +166,8 @@ void conclude(const JobReport& report, const JobOptions& options, const std::str
 }
 
 // What was asked instead of a picture; nothing when one is wanted.
-std::optional<int> answer(const RenderOptions& o) {
+std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
+  if (!o.detect.empty()) return run_detect(cli, o);
   if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return print(light_rows().list());
   if (o.list_detectors) return print(lidar_detectors().list());
@@ -302,8 +303,7 @@ void mute_and_load(const RenderOptions& o) {
 
 int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   mute_and_load(o);
-  if (const auto code = answer(o)) return *code;
-  if (!o.detect.empty()) return run_detect(cli, o);
+  if (const auto code = answer(cli, o)) return *code;
   if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
   if (!o.convert.empty()) return convert_simulation(o);

@@ -66,13 +66,17 @@ struct Model {
     const size_t n = size();
     Sums s{std::vector<double>(n * n, 0), std::vector<double>(n, 0), 0};
     std::vector<double> slope;
+    std::vector<size_t> felt;  // parameters that a sample depends on: few, for pulses are short
     for (size_t k = 0; k < samples; ++k) {
       const double v = value(p, k, slope), w = weight(k, v), r = signal[k] - v;
       s.chi_square += w * r * r;
-      for (size_t i = 0; i < n; ++i) {
-        if (slope[i] == 0) continue;
+      felt.clear();
+      for (size_t i = 0; i < n; ++i)
+        if (slope[i] != 0) felt.push_back(i);
+      for (const size_t i : felt) {
         s.side[i] += w * slope[i] * r;
-        for (size_t j = 0; j <= i; ++j) s.square[i * n + j] += w * slope[i] * slope[j];
+        for (const size_t j : felt)
+          if (j <= i) s.square[i * n + j] += w * slope[i] * slope[j];
       }
     }
     return s;

@@ -29,7 +29,8 @@ struct PixelRecord {
   SampleGrid grid;
   std::vector<double> samples;                      // in the detector's unit; empty: this kind keeps none
   std::vector<double> ideal_samples, ideal_errors;  // without noise, and its standard error by the paths
-  // Where there is no light of the laser: expected sample, its standard deviation, and counts/s of detectors that count.
+  // Where there is no light of the laser: expected sample, its standard deviation, and counts/s of detectors that
+  // count.
   double level = 0, level_noise = 0, background_rate = 0;
 };
 

@@ -27,12 +27,14 @@ inline ResponsePulse response_pulse(double number) {
   return {number * 1e-3, 1.064, 1e-4, ground - 50e-9, pose, pose};
 }
 
-// A roof 6 m above the ground (40 ns before it), which keeps a quarter of the light.
-inline ResponseBlock response_block(const ResponseHead& head, uint64_t first, size_t pulses, double photons = 400) {
+// A roof 6 m above the ground (40 ns before it), which keeps a quarter of the light. east: m, of the first pulse.
+inline ResponseBlock response_block(const ResponseHead& head, uint64_t first, size_t pulses, double photons = 400,
+                                    double east = 0) {
   ResponseBlock b;
   b.first_pulse = first;
   for (size_t p = 0; p < pulses; ++p) {
     b.pulses.push_back(response_pulse(static_cast<double>(first + p)));
+    b.pulses.back().emission.translation.x += east, b.pulses.back().reception.translation.x += east;
     for (size_t x = 0; x < head.pixel_count(); ++x) {
       const auto put = [&](uint32_t bin, double single, double multiple, double grass, double roof) {
         b.bin.push_back(bin), b.contributions.push_back(64);

@@ -69,7 +69,7 @@ class WaveformDetector : public LidarDetector {
 }  // namespace
 
 LidarDetectorRow waveform_detector_row() {
-  return {"waveform", "APD and digitiser: counts of every sample, and returns told from them", "counts",
+  return {"waveform", "APD and digitiser: counts of every sample, and returns found in them", "counts",
           [](const Params& p, const PulseShape& pulse) { return std::make_unique<WaveformDetector>(p, pulse); }};
 }
 
