@@ -1,7 +1,7 @@
 #include "detect.h"
 
 #include "base/files.h"
-#include "base/inputs.h"
+#include "base/run_lock.h"
 #include "detect_input.h"
 #include "detect_output.h"
 #include "formats/pulse/pulse.h"
@@ -68,6 +68,7 @@ int run_detect(const Cli& cli, const RenderOptions& o) {
   if (o.seed >= 0) spec.seed = static_cast<uint64_t>(o.seed);
   const ResponseSource source = open_response(o.detect);
   if (source.pulses == 0) throw Error(Where{o.detect, 0, 0, {}, -1}, "has no pulses");
+  const RunLock lock = RunLock::of_folder(o.output);
   make_folder(o.output);
   const DetectContext context{o.output, source.head, spec, source.pulses};
   const std::vector<std::unique_ptr<DetectOutput>> outputs = read_outputs(text, context);

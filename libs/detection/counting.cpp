@@ -10,7 +10,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kMostEvents = 10000000;
+constexpr size_t kMostEvents = 1000000;
 
 struct Event {
   double time;
@@ -36,7 +36,7 @@ class Array {
     for (uint32_t p = 0; p < pixels_.size(); ++p) blind_[p] = opens, draw(p, opens);
     for (size_t events = 0; !queue_.empty(); ++events) {
       if (events == kMostEvents)
-        throw Error("a pixel would count more than 1e7 events in one gate", "a longer dead time, or a shorter gate");
+        throw Error("a pixel would count more than 1e6 events in one gate", "a longer dead time, or a shorter gate");
       const Event e = queue_.top();
       queue_.pop();
       meet(e);

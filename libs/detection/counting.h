@@ -32,7 +32,7 @@ struct Click {
   Cause cause = Cause::signal;
 };
 
-// All clicks of an array in one gate, by pixel and time. pixels: row by row, all on one grid. Error: more than 1e7
+// All clicks of an array in one gate, by pixel and time. pixels: row by row, all on one grid. Error: more than 1e6
 // events (a bright target and no dead time).
 std::vector<Click> count_primaries(const CountingSpec& spec, std::span<const Expected> pixels, uint32_t columns,
                                    Pcg32& random);

@@ -19,4 +19,20 @@ std::unique_ptr<LidarDetector> make_lidar_detector(const Params& params, const P
   return made;
 }
 
+SampleGrid samples_for(const PulseLight& light, double step, size_t copies) {
+  const SampleGrid grid = samples_within(light.window.start, light.window.stop, step);
+  const double all = static_cast<double>(grid.count) * static_cast<double>(light.pixels.size() * copies);
+  if (all > static_cast<double>(kMostSamples))
+    throw Error(strf("%.4g samples of all pixels", all),
+                strf("at most %zu: a shorter gate or longer samples", kMostSamples));
+  return grid;
+}
+
+void check_step(const Params& p, double step, double width) {
+  constexpr double kMost = 1000;
+  if (width > kMost * step)
+    throw p.error(strf("samples of %g ns for a width of %g ns", step * 1e9, width * 1e9),
+                  strf("at most %g samples a width: %g ns or longer", kMost, width * 1e9 / kMost));
+}
+
 }  // namespace suite

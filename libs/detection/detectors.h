@@ -34,6 +34,11 @@ struct PixelRecord {
   double level = 0, level_noise = 0, background_rate = 0;
 };
 
+// The samples of a gate for all pixels, `copies` of each. Error: more than kMostSamples together.
+SampleGrid samples_for(const PulseLight& light, double step, size_t copies = 1);
+// Error at p: more than 1000 steps within the width (both s) of what is to be resolved; s: 0 = no width.
+void check_step(const Params& p, double step, double width);
+
 class LidarDetector {
  public:
   virtual ~LidarDetector() = default;

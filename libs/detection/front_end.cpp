@@ -108,6 +108,10 @@ Discriminator read_discriminator(const Params& params, const char* unit, double 
   return d;
 }
 
+namespace {
+constexpr size_t kMostDecomposed = 200000;  // samples: some seconds a waveform
+}
+
 std::vector<LidarReturn> tell_returns(const Discriminator& d, std::span<const double> values,
                                       std::span<const double> noise, const SampleGrid& grid) {
   switch (d.by) {

@@ -16,7 +16,7 @@ struct SampleGrid {
   double middle(size_t k) const { return start + (static_cast<double>(k) + 0.5) * step; }
   double stop() const { return begin_of(count); }
 };
-inline constexpr size_t kMostSamples = 20000000;
+inline constexpr size_t kMostSamples = 4000000;
 // From start to stop, both s; the last sample reaches to stop or beyond. Error at `where`: no time, or more than
 // kMostSamples.
 SampleGrid samples_within(double start, double stop, double step, const Where& where = {});

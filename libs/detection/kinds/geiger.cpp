@@ -14,12 +14,13 @@ class GeigerDetector : public LidarDetector {
     rates_.dark = p.number_in("dark_rate_hz", 0, 1e12, "counts/s", 0);
     counting_ = read_counting(p, !framed_);
     step_ = read_counting_step(p, pulse);
+    check_step(p, step_, pulse.fwhm());
   }
   // Of framed pixels the probability that the first count is in a sample; of others the expected primaries.
   std::string sample_unit() const override { return framed_ ? "probability" : "primary electrons"; }
   bool counts_photons() const override { return true; }
   std::vector<PixelRecord> detect(const PulseLight& light, uint64_t key) const override {
-    const SampleGrid grid = samples_within(light.window.start, light.window.stop, step_);
+    const SampleGrid grid = samples_for(light, step_);
     std::vector<Expected> expected;
     for (const PixelLight& pixel : light.pixels)
       expected.push_back(expect_electrons(pixel.arrivals, pixel.passive, pulse_, rates_, grid));

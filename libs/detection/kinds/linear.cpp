@@ -13,6 +13,7 @@ class LinearDetector : public LidarDetector {
       : pulse_(pulse), front_(read_front_end(p)), fwhm_(std::hypot(pulse.fwhm(), front_.receiver_fwhm)) {
     if (!(fwhm_ > 0)) throw p.error("an impulse through a receiver without a width has no edge", "receiver_fwhm_ns: 1");
     step_ = p.number_in("step_ns", 1e-4, 1e5, "ns", fwhm_ * 1e9 / 20) * 1e-9;
+    check_step(p, step_, fwhm_);
     // Levels are currents: what they mean does not depend on the step.
     front_.amplifier_noise = p.number_in("amplifier_noise_e_per_ns", 0, 1e12, "electrons/ns", 0) * step_ * 1e9;
     const double deviation = std::hypot(pulse.deviation(), front_.receiver_fwhm / kFwhmOfDeviation);
@@ -24,7 +25,7 @@ class LinearDetector : public LidarDetector {
   std::string sample_unit() const override { return {}; }
   bool counts_photons() const override { return false; }
   std::vector<PixelRecord> detect(const PulseLight& light, uint64_t key) const override {
-    const SampleGrid grid = samples_within(light.window.start, light.window.stop, step_);
+    const SampleGrid grid = samples_for(light, step_);
     std::vector<PixelRecord> records;
     for (size_t p = 0; p < light.pixels.size(); ++p) {
       Pcg32 random = stream_of(key, 0, light.pulse, p);

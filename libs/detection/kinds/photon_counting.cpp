@@ -14,11 +14,12 @@ class PhotonCounting : public LidarDetector {
     pixels_ = static_cast<uint32_t>(p.integer("pixels_per_spot", 1, 4096));
     counting_ = read_counting(p, true);
     step_ = read_counting_step(p, pulse);
+    check_step(p, step_, pulse.fwhm());
   }
   std::string sample_unit() const override { return "primary electrons"; }
   bool counts_photons() const override { return true; }
   std::vector<PixelRecord> detect(const PulseLight& light, uint64_t key) const override {
-    const SampleGrid grid = samples_within(light.window.start, light.window.stop, step_);
+    const SampleGrid grid = samples_for(light, step_, pixels_);
     std::vector<PixelRecord> records(light.pixels.size());
     for (size_t spot = 0; spot < records.size(); ++spot) {
       const PixelLight& pixel = light.pixels[spot];

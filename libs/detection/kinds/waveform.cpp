@@ -14,6 +14,7 @@ class WaveformDetector : public LidarDetector {
       : pulse_(pulse), front_(read_front_end(p)), fwhm_(std::hypot(pulse.fwhm(), front_.receiver_fwhm)) {
     front_.amplifier_noise = p.number_in("amplifier_noise_e", 0, 1e9, "electrons of a sample", 0);
     step_ = p.number_in("sample_ns", 1e-4, 1e5, "ns") * 1e-9;
+    check_step(p, step_, fwhm_);
     electrons_ = p.number_in("gain_e_per_dn", 1e-9, 1e12, "electrons a count");
     offset_ = p.number_in("offset_dn", 0, 65535, "counts", 0);
     full_ = static_cast<double>((1LL << p.integer("bits", 1, 16)) - 1);
@@ -24,7 +25,7 @@ class WaveformDetector : public LidarDetector {
   std::string sample_unit() const override { return "counts"; }
   bool counts_photons() const override { return false; }
   std::vector<PixelRecord> detect(const PulseLight& light, uint64_t key) const override {
-    const SampleGrid grid = samples_within(light.window.start, light.window.stop, step_);
+    const SampleGrid grid = samples_for(light, step_);
     std::vector<PixelRecord> records;
     for (size_t p = 0; p < light.pixels.size(); ++p) {
       Pcg32 random = stream_of(key, 0, light.pulse, p);

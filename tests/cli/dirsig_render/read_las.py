@@ -51,4 +51,16 @@ for k, r in enumerate(returns):
     back = [float(las[axis][6 + k]) for axis in ("x_t", "y_t", "z_t")]
     size = np.linalg.norm(back)
     assert abs(size - 299792458e-12 / 2) < 5e-4 * size and back[2] > 0.999 * size, back
+# The reference system as PROJ understands it, and the same points packed as LAZ.
+try:
+    import pyproj
+    assert pyproj.CRS.from_wkt([v for v in header.vlrs if v.record_id == 2112][0].string).to_epsg() == 25832
+except ImportError:
+    pass
+if laspy.LazBackend.detect_available():
+    packed = os.path.join(folder, "packed.laz")
+    las.write(packed)
+    again = laspy.read(packed)
+    for name in header.point_format.dimension_names:
+        assert np.array_equal(np.array(las[name]), np.array(again[name])), name
 print("%d points and %d waveforms agree" % (len(las), len(set(offsets))))

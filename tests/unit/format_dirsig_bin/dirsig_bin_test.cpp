@@ -66,6 +66,36 @@ TEST(DirsigBin, ThereAndBack) {
   }
 }
 
+// Revisions 0 and 1 byte by byte, by the page's table: an offset and an order of angles in place of matrices.
+TEST(DirsigBin, OlderRevisions) {
+  for (const int revision : {0, 1}) {
+    std::string b = "DIRSIGPROTO";
+    const auto put = [&](auto value) { b.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    const auto numbers = [&](std::initializer_list<double> values) {
+      for (const double v : values) put(v);
+    };
+    const auto space = [&](size_t n) { b.append(n, '\0'); };
+    put(static_cast<uint8_t>(revision)), put(uint8_t{1});
+    space(15 + 32 + 256), numbers({50, 8, 100}), space(32);
+    put(2u), put(1u), numbers({50, 50});
+    if (revision == 1) numbers({1, 2, 0, 0});
+    put(1u);
+    space(64 + 15 + 15), numbers({400, 1e4, 2e-9, 1e-3, 1.064, 1e-4}), put(1u);
+    numbers({0.5, 1e-6, 2e-6}), put(3u);
+    if (revision == 1) put(1u);
+    numbers({1, 2, 3}), b += "XYZ", numbers({0.1, 0.2, 0.3});
+    for (int end = 0; end < 2; ++end) numbers({0.5, 0.6, 0.7}), b += "XYZ", numbers({0, 0, 0});
+    put(int32_t{5}), put(uint8_t{0}), put(uint8_t{0}), put(uint64_t{8 * 8});
+    numbers({0, 1, 2, 3, 4, 5, 6, 7});
+    const LidarBin bin = parse_lidar_bin(std::as_bytes(std::span(b)), "old.bin");
+    const LidarBinPulse& p = bin.tasks.at(0).pulses.at(0);
+    EXPECT_EQ(bin.head.offset_y_um, revision ? 2 : 0);
+    EXPECT_EQ(p.euler, (Vec3{0.1, 0.2, 0.3}));
+    EXPECT_EQ(p.receiver.to_mount[7], 0.6);
+    EXPECT_EQ(p.photons, (std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7}));
+  }
+}
+
 TEST(DirsigBin, WhatIsRefused) {
   const TempFolder folder;
   write(folder / "a.bin");

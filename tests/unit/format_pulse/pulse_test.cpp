@@ -40,5 +40,20 @@ TEST(PulseFile, ShapeOfAFile) {
   EXPECT_NEAR(PulseShape::table(t.time, t.power).fwhm(), 1.5e-9, 1e-15);
 }
 
+// Transmitted pulses of GEDI (NASA/LP DAAC, public), by beam: 13.5 to 18.0 ns, with tails, so that the standard
+// deviation is larger than that of a Gaussian as wide.
+TEST(PulseFile, PulsesOfGedi) {
+  double narrowest = 1, widest = 0;
+  for (const char* beam : {"BEAM0001", "BEAM0010", "BEAM0011", "BEAM0101", "BEAM0110", "BEAM1000", "BEAM1011"}) {
+    PulseTable t = read_pulse_file(std::string(SUITE_TEST_DATA) + "/lidar/gedi_tx_pulse.csv", beam);
+    ASSERT_EQ(t.time.size(), size_t{128});
+    const PulseShape shape = PulseShape::table(t.time, t.power);
+    narrowest = std::min(narrowest, shape.fwhm()), widest = std::max(widest, shape.fwhm());
+    EXPECT_GT(shape.deviation() * kFwhmOfDeviation, shape.fwhm());
+  }
+  EXPECT_NEAR(narrowest * 1e9, 13.5, 0.1);
+  EXPECT_NEAR(widest * 1e9, 18.0, 0.1);
+}
+
 }  // namespace
 }  // namespace suite
