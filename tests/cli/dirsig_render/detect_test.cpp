@@ -106,6 +106,17 @@ TEST_F(Detect, SeedsAndPhotonsOfDirsig) {
   for (size_t k = 0; k < a.places.size(); ++k) EXPECT_LT(length(a.places[k] - b.places[k]), 2e-3) << k;
 }
 
+// Nothing comes back: clouds of 0 points, waveforms of noise.
+TEST_F(Detect, NothingComesBack) {
+  const CommandResult r = run(
+      "--detect r.h5 d.yaml -o out --set 'gate={start_m: 1500, stop_m: 1510}' --set detectors.frames.dark_rate_hz=0");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("detector 'full': 0 returns of 40 pulses, 40 without any"));
+  Report report(scene_issues());
+  EXPECT_TRUE(read_las(folder_ / "out/full.las", report).places.empty());
+  EXPECT_EQ(h5::Foreign(folder_ / "out/waveforms.h5").table("/BEAM0000/shot_number").values.size(), kPulses);
+}
+
 TEST_F(Detect, WhatIsRefused) {
   const auto refused = [&](const std::string& arguments, int code, const std::string& text) {
     const CommandResult r = run(arguments);

@@ -65,6 +65,25 @@ TEST(ResponseFile, BinsNeverReachedHaveABound) {
   EXPECT_EQ(not_there.bound, 0.02);
 }
 
+// Pulses that nothing came back of have their records.
+TEST(ResponseFile, PulsesWithoutLight) {
+  const TempFolder folder;
+  const ResponseHead head = response_head();
+  ResponseBlock dark;
+  for (int p = 0; p < 3; ++p) {
+    dark.pulses.push_back(response_pulse(p));
+    dark.begin.push_back(0), dark.bound.push_back(0.5), dark.paths.push_back(64);
+  }
+  ResponseWriter writer(folder / "r.h5", head, "a test");
+  writer.take(std::move(dark));
+  writer.finish();
+  const ResponseReader reader(folder / "r.h5");
+  const ResponseBlock b = reader.block(0);
+  EXPECT_EQ(b.pulses.size(), size_t{3});
+  EXPECT_EQ(b.entries(), size_t{0});
+  EXPECT_EQ(ResponseRow(head, b, 2).known(7).bound, 0.5);
+}
+
 TEST(ResponseFile, WhatIsRefused) {
   const TempFolder folder;
   const ResponseHead head = response_head();
