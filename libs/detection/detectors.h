@@ -13,8 +13,8 @@ namespace suite {
 
 // What falls on a pixel after one pulse.
 struct PixelLight {
-  std::vector<Arrival> arrivals;  // photons of the laser
-  double passive = 0;             // photons/s
+  std::vector<PhotonArrival> arrivals;  // photons of the laser
+  double passive = 0;                   // photons/s
 };
 struct PulseLight {
   uint64_t pulse = 0;  // number, of the random stream

@@ -11,7 +11,7 @@ double FoldedRows::listening(const ResponsePulse& pulse, double next) const {
   return how_ == PulsesInAir::fold ? next - pulse.time : std::numeric_limits<double>::infinity();
 }
 
-std::vector<Arrival> FoldedRows::arrivals(const ResponseRow& row, double next) {
+std::vector<PhotonArrival> FoldedRows::arrivals(const ResponseRow& row, double next) {
   const ResponsePulse& pulse = row.pulse();
   if (!(next > pulse.time))
     throw Error(strf("pulse %llu is emitted at %.12g s, not before the one behind it",
@@ -19,7 +19,7 @@ std::vector<Arrival> FoldedRows::arrivals(const ResponseRow& row, double next) {
                 "pulses in the order of their emission");
   if (late_.size() < head_.pixel_count()) late_.resize(head_.pixel_count());
   const double interval = next - pulse.time;
-  std::vector<Arrival> all;
+  std::vector<PhotonArrival> all;
   std::deque<Late>& late = late_[row.pixel()];
   // What earlier pulses left for this one.
   std::deque<Late> still;
@@ -33,7 +33,7 @@ std::vector<Arrival> FoldedRows::arrivals(const ResponseRow& row, double next) {
   late = std::move(still);
   for (size_t k = 0; k < row.size(); ++k) {
     if (row.bin(k) == 0) continue;
-    const Arrival a{arrival_of_bin(head_, pulse, row.bin(k)), row.photons(k), row.photon_variance(k)};
+    const PhotonArrival a{arrival_of_bin(head_, pulse, row.bin(k)), row.photons(k), row.photon_variance(k)};
     if (how_ == PulsesInAir::unfold || a.time < interval) {
       all.push_back(a);
     } else if (how_ == PulsesInAir::fold) {
@@ -46,7 +46,7 @@ std::vector<Arrival> FoldedRows::arrivals(const ResponseRow& row, double next) {
           "say pulses_in_air: fold (as a receiver sees it) or unfold (as if it knew the pulse)");
     }
   }
-  std::sort(all.begin(), all.end(), [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
+  std::sort(all.begin(), all.end(), [](const PhotonArrival& a, const PhotonArrival& b) { return a.time < b.time; });
   return all;
 }
 

@@ -18,7 +18,7 @@ class FoldedRows {
   FoldedRows(const ResponseHead& head, PulsesInAir how) : head_(head), how_(how) {}
   // next: s after the epoch, of the emission that follows; infinite for the last pulse. Rows of one pixel after the
   // other, pulses in their order. Error: pulses out of order, or under `refuse` light later than the next emission.
-  std::vector<Arrival> arrivals(const ResponseRow& row, double next);
+  std::vector<PhotonArrival> arrivals(const ResponseRow& row, double next);
   // s after the emission, where the receiver of the row stops listening: the next emission, or never.
   double listening(const ResponsePulse& pulse, double next) const;
 

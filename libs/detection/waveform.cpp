@@ -15,7 +15,7 @@ SampleGrid samples_within(double start, double stop, double step, const Where& w
   return {start, step, std::max<size_t>(1, static_cast<size_t>(count))};
 }
 
-Expected expect_electrons(std::span<const Arrival> arrivals, double passive, const PulseShape& pulse,
+Expected expect_electrons(std::span<const PhotonArrival> arrivals, double passive, const PulseShape& pulse,
                           const ElectronRates& rates, const SampleGrid& grid) {
   Expected e{grid, std::vector<double>(grid.count, 0), std::vector<double>(grid.count, 0),
              (passive * rates.efficiency + rates.dark) * grid.step};
@@ -23,7 +23,7 @@ Expected expect_electrons(std::span<const Arrival> arrivals, double passive, con
     return static_cast<size_t>(
         std::clamp(std::floor((t - grid.start) / grid.step), 0.0, static_cast<double>(grid.count - 1)));
   };
-  for (const Arrival& a : arrivals) {
+  for (const PhotonArrival& a : arrivals) {
     if (a.time + pulse.high() < grid.start || a.time + pulse.low() >= grid.stop()) continue;
     const size_t first = sample_of(a.time + pulse.low()), last = sample_of(a.time + pulse.high());
     double before = pulse.before(grid.begin_of(first) - a.time);

@@ -22,7 +22,7 @@ inline constexpr size_t kMostSamples = 4000000;
 SampleGrid samples_within(double start, double stop, double step, const Where& where = {});
 
 // An impulse of the response.
-struct Arrival {
+struct PhotonArrival {
   double time = 0;  // s after the emission
   double photons = 0, variance = 0;
 };
@@ -40,7 +40,7 @@ struct Expected {
 };
 
 // passive: photons/s.
-Expected expect_electrons(std::span<const Arrival> arrivals, double passive, const PulseShape& pulse,
+Expected expect_electrons(std::span<const PhotonArrival> arrivals, double passive, const PulseShape& pulse,
                           const ElectronRates& rates, const SampleGrid& grid);
 
 }  // namespace suite

@@ -17,8 +17,8 @@ namespace {
 constexpr double kNs = 1e-9;
 
 Expected pulse_of(double electrons, double step, double background = 0) {
-  Expected e = expect_electrons(std::vector<Arrival>{{10 * kNs, electrons, 0}}, 0, PulseShape::gaussian(kNs), {1, 0},
-                                samples_within(0, 20 * kNs, step));
+  Expected e = expect_electrons(std::vector<PhotonArrival>{{10 * kNs, electrons, 0}}, 0, PulseShape::gaussian(kNs),
+                                {1, 0}, samples_within(0, 20 * kNs, step));
   e.background = background;
   return e;
 }

@@ -57,7 +57,7 @@ TEST(PulseShape, WhatIsRefused) {
 // Half the ellipse of a plate under a top hat (physics of tilted targets) needs no model here: what must hold of any
 // response is that energy and centroid pass, and that widths add in squares.
 TEST(Waveform, EnergyCentroidAndWidthPass) {
-  const std::vector<Arrival> arrivals{{10e-9, 20, 4}, {14.3e-9, 60, 9}};
+  const std::vector<PhotonArrival> arrivals{{10e-9, 20, 4}, {14.3e-9, 60, 9}};
   const PulseShape pulse = PulseShape::gaussian(1.5e-9);
   const Expected e = expect_electrons(arrivals, 1e9, pulse, {0.5, 2e8}, samples_within(0, 40e-9, 0.25e-9));
   double sum = 0, first = 0, second = 0;
@@ -76,8 +76,8 @@ TEST(Waveform, EnergyCentroidAndWidthPass) {
 // 1 ps of pulse in samples of 1 ns, and 1 us in the same: neither loses energy.
 TEST(Waveform, ShortestAndLongestPulse) {
   for (const double fwhm : {1e-12, 1e-6}) {
-    const Expected e = expect_electrons(std::vector<Arrival>{{5e-6, 100, 0}}, 0, PulseShape::gaussian(fwhm), {1, 0},
-                                        samples_within(0, 10e-6, 1e-9));
+    const Expected e = expect_electrons(std::vector<PhotonArrival>{{5e-6, 100, 0}}, 0, PulseShape::gaussian(fwhm),
+                                        {1, 0}, samples_within(0, 10e-6, 1e-9));
     double sum = 0;
     for (const double v : e.signal) sum += v;
     EXPECT_NEAR(sum, 100, 1e-8) << fwhm;

@@ -102,7 +102,7 @@ TEST(PulsesInAir, FoldUnfoldRefuse) {
   for (size_t p = 0; p < 3; ++p) b.pulses[p].time = static_cast<double>(p) * interval, b.pulses[p].start = far - 50e-9;
   FoldedRows fold(head, PulsesInAir::fold), unfold(head, PulsesInAir::unfold), refuse(head, PulsesInAir::refuse);
   EXPECT_TRUE(fold.arrivals({head, b, 0}, interval).empty());
-  const std::vector<Arrival> folded = fold.arrivals({head, b, 1}, 2 * interval);
+  const std::vector<PhotonArrival> folded = fold.arrivals({head, b, 1}, 2 * interval);
   ASSERT_EQ(folded.size(), size_t{2});
   EXPECT_NEAR(folded[1].time, far + 0.05e-9 - interval, 1e-15);
   EXPECT_DOUBLE_EQ(folded[1].photons, 300);
