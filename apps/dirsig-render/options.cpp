@@ -30,7 +30,8 @@ AppInfo render_info() {
           "  dirsig-render sim.yaml -o out --merge p1 p2 p3 p4 p5 p6 p7 p8\n"
           "  dirsig-render -o out --view out.html              a page to look at the finished results\n"
           "  dirsig-render sim.yaml --study study/             how error falls with run time\n"
-          "  dirsig-render sim.yaml --dry-run                 what would be computed\n\n"
+          "  dirsig-render sim.yaml --dry-run                 what would be computed\n"
+          "  dirsig-render --detect response.h5 detector.yaml -o points    waveforms and points of laser pulses\n\n"
           "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 "
           "our bug."};
 }
@@ -79,6 +80,7 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
   cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
+  cli.flag("--list-detectors", o.list_detectors, "print the kinds of detectors of --detect and stop");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
   cli.flag("--list-diagnostics", o.list_diagnostics, "print the code, condition and cure of every diagnostic and stop");
@@ -117,6 +119,14 @@ void declare_heat(Cli& cli, RenderOptions& o) {
   cli.flag("--heat-only", o.heat_only, "find the temperatures of `heat:`, write FOLDER/heat.h5 and heat.csv, and stop");
 }
 
+void declare_detect(Cli& cli, RenderOptions& o) {
+  cli.option("--detect", o.detect,
+             "detect stored responses of laser pulses (.h5, or .bin of DIRSIG) with the detectors of the text that is "
+             "given in place of a simulation (apps/dirsig-render/DETECTION.md), write points and waveforms into the "
+             "folder of -o, and stop; nothing is traced",
+             "FILE");
+}
+
 void declare_view(Cli& cli, RenderOptions& o) {
   cli.option("--view", o.view,
              "write a page to look at the results in a browser, which needs nothing else: of this run, or without a "
@@ -130,8 +140,10 @@ void declare_view(Cli& cli, RenderOptions& o) {
 }  // namespace
 
 void declare_render(Cli& cli, RenderOptions& o) {
-  cli.positional("simulation", o.simulation, "simulation text (YAML or JSON), or a simulation of DIRSIG (.sim, .jsim)",
-                 false);
+  cli.positional(
+      "simulation", o.simulation,
+      "simulation text (YAML or JSON), or a simulation of DIRSIG (.sim, .jsim); with --detect the text of detectors",
+      false);
   cli.option("-o,--output", o.output, "folder for the results; made when missing", "FOLDER");
   cli.option(
       "--set", o.settings,
@@ -180,6 +192,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run",
              "FILE");
   declare_view(cli, o);
+  declare_detect(cli, o);
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   declare_import(cli, o);
   declare_questions(cli, o);

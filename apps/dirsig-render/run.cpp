@@ -1,4 +1,4 @@
-#include "air_lut.h"
+#include "run.h"
 
 #include <cmath>
 
@@ -14,6 +14,8 @@
 #include "budget_options.h"
 #include "continued.h"
 #include "deck_report.h"
+#include "detect.h"
+#include "detection/detectors.h"
 #include "dirsig_import.h"
 #include "dry_checks.h"
 #include "dry_run.h"
@@ -171,9 +173,11 @@ void conclude(const JobReport& report, const JobOptions& options, const std::str
 }
 
 // What was asked instead of a picture; nothing when one is wanted.
-std::optional<int> answer(const RenderOptions& o) {
+std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
+  if (!o.detect.empty()) return run_detect(cli, o);
   if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return print(light_rows().list());
+  if (o.list_detectors) return print(lidar_detectors().list());
   if (o.list_truth) return print(truth_rows().list());
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());
@@ -308,7 +312,7 @@ void mute_and_load(const RenderOptions& o) {
 
 int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   mute_and_load(o);
-  if (const auto code = answer(o)) return *code;
+  if (const auto code = answer(cli, o)) return *code;
   if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
   if (!o.convert.empty()) return convert_simulation(o);

@@ -67,6 +67,8 @@ class Writer {
     void append(std::span<const T> data) {
       write(native<T>(), data.data(), data.size());
     }
+    // Values of the column's own type as bytes.
+    void append_raw(Id type, const void* data, size_t count) { write(type, data, count); }
 
    private:
     friend class Writer;

@@ -9,6 +9,7 @@ find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(OpenSSL REQUIRED)
 find_package(LibLZMA REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(embree 3 REQUIRED)
 
 function(suite_vendor name)  # suite_vendor(<name> target-or-library...)
@@ -25,6 +26,7 @@ suite_vendor(yaml yaml-cpp)
 suite_vendor(json nlohmann_json::nlohmann_json)
 suite_vendor(crypto OpenSSL::Crypto)
 suite_vendor(lzma LibLZMA::LibLZMA)
+suite_vendor(zlib ZLIB::ZLIB)
 suite_vendor(embree embree)
 
 # Debian's CMake files of these two name targets that its packages do not ship; their pkg-config files are right.
