@@ -244,7 +244,7 @@ std::vector<Diagnostic> diagnose_air(const SourceSpecs& written, const Scene& sc
   const AirSpec& air = *first.air;
   const TechniqueFacts facts = technique_facts(scene, written, job.pipeline);
   if (air.adjacency && scene.media.empty()) {
-    if (!uses(Technique::adjacency, facts))
+    if (!uses(ListedTechnique::adjacency, facts))
       found.push_back(
           {Dr::no_adjacency,
            "air: this estimator goes back to no place in the air: light between ground and air is that of " +

@@ -23,7 +23,7 @@ constexpr TechniqueCondition kManifold{[](const Facts& f) { return f.options.ref
 constexpr TechniqueCondition kMedia{[](const Facts& f) { return f.media > 0; }, "media in the scene",
                                     "no media in the scene"};
 
-bool behind_interfaces(const Facts& f) { return uses(Technique::manifold_nee, f); }
+bool behind_interfaces(const Facts& f) { return uses(ListedTechnique::manifold_nee, f); }
 
 constexpr TechniqueCondition kManifoldNee[] = {kSmooth, kSmall, kStandard, kSampled, kManifold};
 constexpr TechniqueCondition kMultiVertex[] = {
@@ -56,22 +56,22 @@ constexpr TechniqueCondition kAdjacency[] = {
     kSampled};
 
 constexpr TechniqueRow kRows[] = {
-    {Technique::manifold_nee, "MNEE",
+    {ListedTechnique::manifold_nee, "MNEE",
      "Manifold next-event estimation: sun, moon and lamps are connected through smooth interfaces (water, panes, "
      "lenses) from every vertex. Where no material refracts smoothly nothing of it is made, and it costs nothing.",
      kManifoldNee},
-    {Technique::multi_vertex_nee, "multi-vertex NEE",
+    {ListedTechnique::multi_vertex_nee, "multi-vertex NEE",
      "Several scattering vertices between a vertex and a light behind smooth interfaces, sampled together where media "
      "scatter forwards.",
      kMultiVertex},
-    {Technique::splitting, "splitting",
+    {ListedTechnique::splitting, "splitting",
      "A second free flight towards the sun or the moon from vertices in media that scatter forwards.", kSplitting},
-    {Technique::caustic_guiding, "caustic guiding",
+    {ListedTechnique::caustic_guiding, "caustic guiding",
      "Photon-guided sampling of caustics: photons find where narrow lobes reflect sun, moon and lamps to, and a share "
      "of continuations is drawn there. Where no material has a narrow lobe, or no photon lands, none is kept, and "
      "paths cost what they did without.",
      kCausticGuiding},
-    {Technique::adjacency, "adjacency",
+    {ListedTechnique::adjacency, "adjacency",
      "Residual estimator over the 1-D field of real air: shadows in the air and light of single places. Without, or "
      "without air, kernels are made that know nothing of it.",
      kAdjacency},
@@ -81,7 +81,7 @@ constexpr TechniqueRow kRows[] = {
 
 std::span<const TechniqueRow> technique_rows() { return kRows; }
 
-const TechniqueRow& technique_row(Technique technique) { return kRows[static_cast<size_t>(technique)]; }
+const TechniqueRow& technique_row(ListedTechnique technique) { return kRows[static_cast<size_t>(technique)]; }
 
 const TechniqueCondition* unmet(const TechniqueRow& row, const TechniqueFacts& facts) {
   const auto found = std::ranges::find_if(row.conditions, [&](const auto& c) { return !c.holds(facts); });

@@ -14,7 +14,7 @@
 
 namespace suite {
 
-enum class Technique : uint8_t {
+enum class ListedTechnique : uint8_t {
   manifold_nee,      // next-event estimation of lights behind smooth interfaces (MNEE)
   multi_vertex_nee,  // of lights behind media under smooth interfaces
   splitting,         // with a light-directed scattering vertex
@@ -44,7 +44,7 @@ struct TechniqueCondition {
   const char* otherwise;  // why it is not used: "no sun, moon or lamp in the simulation"
 };
 struct TechniqueRow {
-  Technique technique;
+  ListedTechnique technique;
   const char* name;  // of `--explain`, of the list of parts
   const char* text;  // what it does
   std::span<const TechniqueCondition> conditions;
@@ -52,10 +52,10 @@ struct TechniqueRow {
 
 // All of them, in the order of the enumeration.
 std::span<const TechniqueRow> technique_rows();
-const TechniqueRow& technique_row(Technique technique);
+const TechniqueRow& technique_row(ListedTechnique technique);
 // The first condition that does not hold; null when the technique is used.
 const TechniqueCondition* unmet(const TechniqueRow& row, const TechniqueFacts& facts);
-inline bool uses(Technique technique, const TechniqueFacts& facts) { return !unmet(technique_row(technique), facts); }
+inline bool uses(ListedTechnique technique, const TechniqueFacts& facts) { return !unmet(technique_row(technique), facts); }
 // What it does and what it needs.
 std::string explained(const TechniqueRow& row);
 
