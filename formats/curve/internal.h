@@ -15,7 +15,7 @@ struct NamedRows {
 // A stored number that marks a deleted channel: USGS's libraries have -1.23e34.
 inline bool is_mark(double stored) { return stored <= -1e30; }
 // The curve through the values that are there; NaN marks the others, which are left out and reported through
-// options.tell. No rule holds beyond an end that is marked. Error: as Curve, and no value at all.
+// options.on_warning. No rule holds beyond an end that is marked. Error: as Curve, and no value at all.
 Curve curve_of(std::vector<double> um, std::vector<double> value, const CurveOptions& options, const Where& where);
 
 Curve read_table(const std::string& path, const CurveOptions& options);

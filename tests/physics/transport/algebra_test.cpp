@@ -6,6 +6,7 @@
 #include "transport/estimators/standard.h"
 #include "transport/kernel_branch.h"
 #include "transport/kernel_chain.h"
+#include "transport/kernel_claims.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_gloss.h"
 #include "transport/kernel_go_on.h"

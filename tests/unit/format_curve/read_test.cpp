@@ -58,7 +58,7 @@ TEST_F(CurveFile, MarksOfDeletedChannelsAreLeftOut) {
   std::string said;
   CurveOptions options;
   options.outside = Outside::hold;
-  options.tell = [&](const std::string&, const std::string& what) { said = what; };
+  options.on_warning = [&](const std::string&, const std::string& what) { said = what; };
   const Curve c = read(rows, options);
   EXPECT_DOUBLE_EQ(c.low_um(), 0.5);
   EXPECT_DOUBLE_EQ(c.at(1.4), 0.23);
