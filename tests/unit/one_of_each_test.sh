@@ -3,7 +3,7 @@
 # The decisions of transport stand once: where paths end by chance, what contributions share, where lights are asked,
 # which numbers are drawn, and where the tracer is called. Kinds of lights are named by their own files, by the table that
 # collects their rows, and by the suns that a capture brings itself, by the sky of the air (sky_table, sky_through_water), which
-# is drawn as a table is; the solar spectrum, which decks are lit by, is no light but stands among them, as does the
+# is drawn as a table is; the solar spectrum, which decks and tables for atmospheric correction are lit by, is no light but stands among them, as does the
 # spectrum of clear skies; the balance of heat weighs with both. What is outside is asked for its light, and once before whether
 # there is any; surfaces that shine, where paths meet them and where ways through smooth interfaces end. Prints the list.
 set -u
@@ -34,9 +34,13 @@ places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
 # Beside a stage's own rays: photons that are sent before there are any, which media a place lies in, what lies in one place with an interface, and ways through
 # interfaces, whose rays follow from each other.
 places "calls of the tracer" 8 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
-places "kinds of lights"     19 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
+places "kinds of lights"     20 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
   libs/[a-km-z]* libs/light/*.h libs/light/*.cpp apps formats
-# The list would notice a second one: this test's own text has one of each pattern more.
-extra=$(grep -cE 'std::clamp\(brightness, kLeast, 1\.0\)' <<<'  return std::clamp(brightness, kLeast, 1.0);')
-[ "$extra" -eq 1 ] || { echo "the patterns find nothing"; failed=1; }
+# Negative control: a second place is noticed.
+twice=$(mktemp -d)
+mkdir "$twice/libs"
+printf '  return std::clamp(brightness / kCarries, kLeast, 1.0);\n%.0s' 1 2 > "$twice/libs/twice.h"
+(cd "$twice" && failed=0 && places "control" 1 'std::clamp\(brightness / kCarries, kLeast, 1\.0\)' libs > /dev/null && [ $failed -eq 1 ]) ||
+  { echo "a second place is not noticed"; failed=1; }
+rm -r "$twice"
 exit $failed
