@@ -15,11 +15,11 @@ void check_detect_usage(const Cli& cli, const RenderOptions& o) {
     throw UsageError("--detect wants the text of the detectors: --detect RESPONSE.h5 detector.yaml -o FOLDER");
   for (const char* option :
        {"--paths",   "--target-error",  "--target-floor", "--target-bands", "--time",          "--stop",
-        "--method",  "--kit-memory",    "--memory",       "--state",        "--resume",        "--more",
+        "--method",  "--cache-memory",  "--memory",       "--state",        "--resume",        "--more",
         "--part",    "--merge",         "--plan",         "--heat",         "--heat-operator", "--heat-only",
         "--study",   "--study-budgets", "--study-seeds",  "--reference",    "--view",          "--view-size",
         "--dry-run", "--ranks",         "--link",         "--air",          "--against",       "--load-all",
-        "--convert", "--account",       "--strict",       "--path"})
+        "--convert", "--import-report", "--strict",       "--path"})
     if (cli.given(option))
       throw UsageError(std::string(option) + " is of renders: --detect traces nothing; it takes -o, --set and --seed");
   if (cli.given("--seed") && (o.seed < 0 || o.seed > (1LL << 53)))

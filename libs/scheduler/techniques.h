@@ -55,7 +55,9 @@ std::span<const TechniqueRow> technique_rows();
 const TechniqueRow& technique_row(ListedTechnique technique);
 // The first condition that does not hold; null when the technique is used.
 const TechniqueCondition* unmet(const TechniqueRow& row, const TechniqueFacts& facts);
-inline bool uses(ListedTechnique technique, const TechniqueFacts& facts) { return !unmet(technique_row(technique), facts); }
+inline bool uses(ListedTechnique technique, const TechniqueFacts& facts) {
+  return !unmet(technique_row(technique), facts);
+}
 // What it does and what it needs.
 std::string explained(const TechniqueRow& row);
 

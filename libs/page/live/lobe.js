@@ -263,7 +263,7 @@ function begin() {
   for (const [key, text] of [['log', 'logarithm of the value'], ['root', 'its cube root'], ['linear', 'the value'], ['sphere', 'none: the sphere of directions']]) option(ui.scale, key, text);
   ui.edges = make('input', {type: 'checkbox', id: 'edges', checked: true, onchange: () => { state.edges = ui.edges.checked; draw(); }});
   ui.facts = make('div', {id: 'facts'});
-  ui.picked = make('div', {id: 'picked'}, 'Drag turns, the wheel goes nearer, a click shows a cell's value.');
+  ui.picked = make('div', {id: 'picked'}, 'Drag turns, the wheel goes nearer, a click shows the value of a cell.');
   ui.bar = make('canvas', {width: 280, height: 12});
   ui.barText = make('div', {className: 'row', style: 'justify-content:space-between;flex-wrap:nowrap;font-size:12px', id: 'legend'});
   ui.lacks = make('div', {className: 'said', id: 'lacks'});
