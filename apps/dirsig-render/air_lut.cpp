@@ -122,8 +122,12 @@ void report_errors(const LutTable& table, const LutValues& errors) {
   }
 }
 
-// Where the tables of gases are less sure than in general.
+// Where the table is less sure than in general.
 void report_limits(const AirSpec& air, const LutTable& table) {
+  constexpr double kBlue = 0.6;  // um: beyond, Rayleigh scattering is thin
+  const auto blue = std::ranges::count_if(table.bands, [](const Band& b) { return b.center_um < kBlue; });
+  if (air.molecules && blue > 0)
+    note(strf("air LUT: rhoatm of %zd band(s) below 0.6 um is without polarisation, up to 10 %% of itself off", blue));
   if (!air.gases) return;
   for (const GasLimit& limit : air.gases->limits()) {
     const auto hit = [&](const Band& b) { return b.center_um >= limit.low_um && b.center_um <= limit.high_um; };

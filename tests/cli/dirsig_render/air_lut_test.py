@@ -84,6 +84,7 @@ class AirLut(unittest.TestCase):
 
     def test_what_is_neglected_is_said_with_its_size(self):
         self.assertIn("rhoatm is within", self.said)
+        self.assertIn("rhoatm of 1 band(s) below 0.6 um is without polarisation", self.said)
         table = xarray.open_dataset(FOLDER / "lut/air_lut.nc")
         for name in ("rhoatm", "dir-dir", "sphalb"):
             self.assertTrue(bool((table[name + "_error"] > 0).all()), name)
