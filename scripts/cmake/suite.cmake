@@ -1,6 +1,6 @@
 # The house rules of the build: one function per kind of target, and a configuration that fails when a library looks
 # up or to its right. The order below is the drawing in README.md read row by row from the ground, left to right.
-set(SUITE_ORDER base math page  spectral motion sqt sqt_fit  optics water air thermal scene mesh  sensor detection trace surface light estimate transport scheduler heat cluster study correction)
+set(SUITE_ORDER base math page  spectral motion sqt sqt_fit  optics water air thermal scene mesh  sensor detection trace surface light estimate transport scheduler heat cluster study correction lidar)
 set(SUITE_ROW_OF_base 0)
 set(SUITE_ROW_OF_math 0)
 set(SUITE_ROW_OF_page 0)
@@ -10,7 +10,7 @@ endforeach()
 foreach(lib optics water air thermal scene mesh)
   set(SUITE_ROW_OF_${lib} 2)
 endforeach()
-foreach(lib sensor detection trace surface light estimate transport scheduler heat cluster study correction)
+foreach(lib sensor detection trace surface light estimate transport scheduler heat cluster study correction lidar)
   set(SUITE_ROW_OF_${lib} 3)
 endforeach()
 

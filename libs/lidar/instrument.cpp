@@ -1,0 +1,22 @@
+#include "lidar/instrument.h"
+
+namespace suite {
+
+std::string fault_of(const LidarInstrument& i) {
+  const LidarReceiver& r = i.receiver;
+  if (!(r.aperture > 0)) return "the aperture must be above 0";
+  if (!(r.obscuration >= 0 && r.obscuration < 1)) return "the obscuration must be from 0 to below 1";
+  if (!(r.throughput > 0 && r.throughput <= 1)) return "the throughput must be above 0 and at most 1";
+  if (r.columns == 0 && !(r.field_of_view >= 0 && r.field_of_view <= 2))
+    return "the field of view must be from 0 to 2 rad";
+  if (!(i.gate.bin >= 1e-13 && i.gate.bin <= 1e-6)) return "range bins must be 1e-4 to 1000 ns wide";
+  if (!(i.gate.start >= 0 && i.gate.stop > i.gate.start))
+    return "the gate must start at 0 or later and stop after that";
+  if (const double bins = (i.gate.stop - i.gate.start) / i.gate.bin; bins > 1e8)
+    return strf("the gate has %.3g range bins, at most 1e8 are kept", bins);
+  if (i.paths < 2) return "at least 2 paths a pulse are needed for a standard error";
+  if (i.orders < 1) return "at least one order of scattering is needed";
+  return {};
+}
+
+}  // namespace suite
