@@ -4,7 +4,6 @@
 #include <cmath>
 #include <queue>
 
-#include "sensor/detector.h"
 
 namespace suite {
 

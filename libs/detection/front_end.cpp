@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sensor/detector.h"
 
 namespace suite {
 

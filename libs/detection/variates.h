@@ -1,6 +1,6 @@
-// Random variates of detectors beside those of sensor/detector.h (Poisson, normal), and the key of their stream.
+// Random variates of laser radar detectors beside those of math/variates.h, and the key of their stream.
 #pragma once
-#include "math/sampling.h"
+#include "math/variates.h"
 
 namespace suite {
 
@@ -8,12 +8,6 @@ namespace suite {
 inline Pcg32 stream_of(uint64_t seed, uint64_t detector, uint64_t pulse, uint64_t pixel = 0) {
   return Pcg32(hash_of(seed, detector, pulse, pixel), hash_of(pulse, pixel));
 }
-
-// Gamma variate of the given shape (> 0) and mean shape * scale. Based on: G. Marsaglia, W. W. Tsang, "A simple method
-// for generating gamma variables", ACM TOMS 26, 2000; shapes below 1 by their section 6.
-double gamma_variate(double shape, double scale, Pcg32& random);
-// Exponential variate.
-double exponential_variate(double mean, Pcg32& random);
 
 // Electrons behind an avalanche of mean gain M and excess noise F (>= 1) of n primary ones: mean n M, variance
 // n M^2 (F - 1) as McIntyre's distribution has them (IEEE Trans. Electron Devices 13, 1966), drawn from the gamma

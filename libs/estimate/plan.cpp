@@ -19,14 +19,14 @@ Moments moments_of(const Accumulators& pilot, size_t problem, size_t band) {
   return m;
 }
 
-double need(double variance, double mean, double floor) {
-  const double scale = std::max(mean, floor);
+double need(const JudgedBand& judge, double variance, double mean, double floor) {
   if (!(variance > 0)) return 0;
-  return scale > 0 ? variance / (scale * scale) : INFINITY;
+  const double square = judge.square_scale(mean, floor);
+  return square > 0 ? judge.weight * variance / square : INFINITY;
 }
 
 // Pools one band over each problem's neighbours and keeps the larger need.
-void pool_band(const Capture& capture, const std::vector<Moments>& of, double weight, const Goals& goals,
+void pool_band(const Capture& capture, const std::vector<Moments>& of, const JudgedBand& judge, const Goals& goals,
                std::vector<double>& needs) {
   constexpr long reach = 2;
   const long columns = capture.columns, rows = capture.rows;
@@ -43,11 +43,17 @@ void pool_band(const Capture& capture, const std::vector<Moments>& of, double we
         }
       const size_t problem = static_cast<size_t>(r * columns + k);
       needs[problem] =
-          std::max(needs[problem], weight * need(variance / n, mean / n, goals.of(problem).absolute_floor));
+          std::max(needs[problem], need(judge, variance / n, mean / n, goals.of(problem).absolute_floor));
     }
 }
 
 }  // namespace
+
+double JudgedBand::square_scale(double radiance, double floor) const {
+  if (noise) return noise->constant + noise->linear * std::max(radiance, 0.0);
+  const double scale = std::max(radiance, floor);
+  return scale > 0 ? scale * scale : 0;
+}
 
 bool has_neighbours(const Capture& capture) { return capture.neighbours && capture.problems() >= 2; }
 
@@ -57,7 +63,7 @@ std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, 
   std::vector<Moments> of(capture.problems());
   for (const JudgedBand& judge : judged) {
     for (size_t i = 0; i < of.size(); ++i) of[i] = moments_of(pilot, i, judge.band);
-    pool_band(capture, of, judge.weight, goals, needs);
+    pool_band(capture, of, judge, goals, needs);
   }
   return needs;
 }
@@ -67,7 +73,7 @@ std::vector<double> own_needs_of(const Accumulators& pilot, std::span<const Judg
   for (const JudgedBand& judge : judged)
     for (size_t i = 0; i < needs.size(); ++i) {
       const Moments m = moments_of(pilot, i, judge.band);
-      needs[i] = std::max(needs[i], judge.weight * need(m.variance, m.mean, goals.of(i).absolute_floor));
+      needs[i] = std::max(needs[i], need(judge, m.variance, m.mean, goals.of(i).absolute_floor));
     }
   return needs;
 }

@@ -1,5 +1,6 @@
 // Sample allocation: how many paths each problem gets, decided without bias.
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,11 +13,15 @@ namespace suite {
 struct JudgedBand {
   size_t band = 0;
   double weight = 1;
+  std::optional<BandNoise> noise = {};  // what the error is judged beside; none: radiance
+  // The square of that, for a problem's radiance and its goal's floor.
+  double square_scale(double radiance, double floor) const;
 };
 
 // Stage 1 of two: the pilot has been run for all problems. What a problem needs follows from the variance of its
 // neighbours' pilots, never from its own, so keeping all its samples does not bias its mean: the number of paths that
-// would bring the relative standard error to 1, variance / max(mean, floor)^2, pooled over the 24 problems around it;
+// would bring the relative standard error to 1, variance / max(mean, floor)^2, pooled over the 24 problems around it
+// (beside a detector's noise: variance / its variance);
 // the largest over the bands in `judged`, each times its weight. The count for another target is this divided by the
 // target squared, so that a run which is continued plans from the same pilot. 0 where no variance was seen; infinite
 // where the mean is 0. A problem's floor is its own goal's.

@@ -9,6 +9,13 @@
 namespace suite {
 
 std::vector<JudgedBand> judged_bands(const Capture& capture, const Budget& budget, const Kit::Bands& bands) {
+  if (!capture.detector_noise.empty() && !budget.relative_error) {
+    std::vector<JudgedBand> judged;
+    for (size_t b = 0; b < capture.detector_noise.size(); ++b)
+      if (const BandNoise& noise = capture.detector_noise[b]; noise.constant > 0 || noise.linear > 0)
+        judged.push_back({b, 1, noise});
+    return judged;
+  }
   const std::vector<double>& targets = capture.band_targets;
   if (targets.empty() && !budget.all_bands) return {{bands.reference}};
   std::vector<JudgedBand> judged;
@@ -32,21 +39,49 @@ void Judge::add(size_t sensor, const CaptureWork& work, size_t reference, const 
       errors.add(r.standard_error[i * values + reference] / mean);
     double worst = 0;
     const Convergence goal = work.goals.of(i);
-    for (const auto [b, weight] : work.judged) {
-      const double scale = std::max(r.radiance[i * values + b], goal.absolute_floor);
-      if (scale > 0) worst = std::max(worst, std::sqrt(weight) * r.standard_error[i * values + b] / scale);
+    for (const JudgedBand& judge : work.judged) {
+      const double square = judge.square_scale(r.radiance[i * values + judge.band], goal.absolute_floor);
+      if (square > 0)
+        worst = std::max(worst, std::sqrt(judge.weight / square) * r.standard_error[i * values + judge.band]);
     }
     if (worst > report.worst.relative_error)
       report.worst = {work.sensor.name(), work.capture.name, static_cast<uint32_t>(i % work.capture.columns),
                       static_cast<uint32_t>(i / work.capture.columns), worst};
     if (!(goal.relative_error > 0)) continue;
+    if (!work.judged.empty() && work.judged.front().noise) {
+      add_to_saved(r.radiance[i * values + reference], r.standard_error[i * values + reference], r.paths[i]);
+      noise_target_ = std::max(noise_target_, goal.relative_error);
+    } else {
+      target_ = std::max(target_, goal.relative_error);
+    }
     with_target_ += 1;
     at_target_ += worst <= goal.relative_error ? 1 : 0;
     at_maximum_ += r.paths[i] >= goal.max_paths ? 1 : 0;
-    target_ = std::max(target_, goal.relative_error);
   }
   log.median_relative_error = errors.median();
   errors_.merge(errors);
+}
+
+void Judge::add_to_saved(double radiance, double error, uint32_t paths) {
+  paths_by_noise_ += paths;
+  // Variances fall as one over the number of paths, at the slowest.
+  const double share = radiance > 0 ? error / (kUsualTarget * radiance) : 1;
+  paths_by_radiance_ += paths * share * share;
+}
+
+std::string Judge::target_text() const {
+  std::string s = "stopped by the plan for ";
+  if (target_ > 0) s += strf("a target of %g %%", 100 * target_);
+  if (noise_target_ > 0)
+    s += strf("%sa standard error of %g %% of the detectors' noise", target_ > 0 ? " and " : "", 100 * noise_target_);
+  return s;
+}
+
+std::string Judge::saved_text() const {
+  if (!(noise_target_ > 0)) return {};
+  return strf("; by the detectors' noise %.3g paths were run, where a standard error of %g %% of the radiance would "
+              "take %.3g (%.3g times as many)",
+              paths_by_noise_, 100 * kUsualTarget, paths_by_radiance_, paths_by_radiance_ / paths_by_noise_);
 }
 
 void Judge::finish(const JobOptions& options, uint32_t cap, JobReport& report) const {
@@ -70,9 +105,8 @@ void Judge::finish(const JobOptions& options, uint32_t cap, JobReport& report) c
         options.pipeline.change);
   else if (with_target_ > 0)
     s = strf(
-        "stopped by the plan for a target of %g %%, or by its maximum of paths (%.1f %% of the problems); %.1f %% of "
-        "the problems are at the target",
-        100 * target_, 100 * at_maximum_ / with_target_, 100 * report.share_at_target);
+        "%s, or by its maximum of paths (%.1f %% of the problems); %.1f %% of the problems are at the target%s",
+        target_text().c_str(), 100 * at_maximum_ / with_target_, 100 * report.share_at_target, saved_text().c_str());
   else
     s = "every problem ran the paths it was given";
   if (report.time_cap)

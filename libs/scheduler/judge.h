@@ -19,8 +19,16 @@ class Judge {
   void finish(const JobOptions& options, uint32_t cap, JobReport& report) const;
 
  private:
+  // What a problem that was planned by its detector's noise took, and would take for kUsualTarget of its radiance.
+  void add_to_saved(double radiance, double error, uint32_t paths);
+  std::string target_text() const;
+  std::string saved_text() const;
+
+  static constexpr double kUsualTarget = 0.01;
   ErrorHistogram errors_;
-  double with_target_ = 0, at_target_ = 0, at_maximum_ = 0, target_ = 0;  // problems; the largest target
+  double with_target_ = 0, at_target_ = 0, at_maximum_ = 0;  // problems
+  double target_ = 0, noise_target_ = 0;                     // the largest, beside radiance and beside noise
+  double paths_by_noise_ = 0, paths_by_radiance_ = 0;
 };
 
 }  // namespace suite

@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "base/params.h"
-#include "math/sampling.h"
 #include "sensor/sensors.h"
 #include "spectral/state.h"
 
 namespace suite {
+
+inline constexpr double kMostElectrons = 1e12;
 
 struct DetectorSpec {
   Curve quantum_efficiency;  // electrons per photon, 0..1
@@ -37,6 +38,8 @@ struct DetectorSpec {
   // difference against it that is to be met, 0 = as the other terms make it.
   double background = 0, netd = 0;
   bool counts() const { return gain > 0; }
+  // Signal electrons as they are told from counts: bias and mean dark current taken off. exposure: s.
+  double signal_of(double counts, double exposure) const { return (counts - bias) * gain - dark_current * exposure; }
 };
 
 // Noise-equivalent temperature difference (NEDT, NETD): temporal noise against a blackbody that fills the view.
@@ -51,8 +54,14 @@ struct NoiseAtBackground {
 // what the other terms make.
 NoiseAtBackground noise_at_background(const DetectorSpec& spec, double signal, double slope, double exposure);
 
-// Reads key `detector`; nothing when absent. Error: what only counts can show, without `gain_e_per_dn`.
-std::optional<DetectorSpec> read_detector(const Params& params, const SensorContext& context);
+// The keys of a detector, in the parts that its kinds (detectors/) are put together from. Located Error for anything
+// wrong. What lets light in: quantum_efficiency, fill_factor.
+void read_light(const Params& p, const SensorContext& context, DetectorSpec& d);
+// What pixels differ in, and the seed: prnu, dark_nonuniformity, dead_fraction, hot_fraction, bad_pixels, seed. dark:
+// the key of the dark current, per second.
+void read_pixels(const Params& p, const char* dark, DetectorSpec& d);
+// From charge to counts: gain_e_per_dn, full_well_e, bias_dn (`bias` unless given), bits.
+void read_converter(const Params& p, double bias, DetectorSpec& d);
 
 // 1/sr: irradiance on the focal plane = radiance / G#. throughput: 0..1 of the optics; obscuration: share of the
 // diameter.
@@ -62,39 +71,5 @@ double g_number(double f_number, double throughput, double obscuration = 0);
 // receives electrons per (W/(m2 um) of spectral irradiance on a m2 for 1 s), averaged with that weight:
 // integral of response QE lambda / (h c) dlambda.
 Band photon_band(const Band& band, const Curve& quantum_efficiency, double& electrons);
-
-class Detector {
- public:
-  explicit Detector(const DetectorSpec& spec) : spec_(spec) {}
-  const DetectorSpec& spec() const { return spec_; }
-  // What a detector always is, of its number (row * columns + column of the array).
-  struct Character {
-    double response = 1, dark = 1;  // factors
-    bool dead = false, hot = false;
-  };
-  Character character(uint64_t detector) const;
-  struct Reading {
-    uint16_t counts = 0;
-    bool clipped = false;  // by the full well or an end of the converter; what always gives 0 or full scale is not
-  };
-  // One read-out of a detector that counts: signal electrons (before the detector's own response), exposure time (s)
-  // and a number that tells this read-out from all others. more: electrons, standard deviation of noise beside that of
-  // the spec.
-  Reading read(double electrons, double exposure, const Character& of, uint64_t read_out, double more = 0) const;
-  // Signal electrons as they are told from counts: bias and mean dark current taken off.
-  double signal_of(double counts, double exposure) const {
-    return (counts - spec_.bias) * spec_.gain - spec_.dark_current * exposure;
-  }
-
- private:
-  DetectorSpec spec_;
-};
-
-// Poisson variate with the given mean from a generator: by inversion up to 30, by transformed rejection above.
-// Based on: W. Hoermann, "The transformed rejection method for generating Poisson random variables", Insurance:
-// Mathematics and Economics 12, 1993 (algorithm PTRS).
-double poisson(double mean, Pcg32& random);
-// Standard normal variate (Box and Muller 1958).
-double normal(Pcg32& random);
 
 }  // namespace suite

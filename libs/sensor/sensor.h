@@ -27,6 +27,13 @@ struct Convergence {
   double absolute_floor = 0;  // W/(m2 sr um): below it the error is judged absolutely
 };
 
+// Noise of a detector beside which the Monte Carlo error of a band is judged: its variance is constant + linear *
+// radiance.
+struct BandNoise {
+  double constant = 0;  // (W/(m2 sr um))^2
+  double linear = 0;    // W/(m2 sr um)
+};
+
 // One event of data collection: a frame, some lines. Problems are laid out in rows and columns.
 struct Capture {
   std::string name;                // unique within the sensor
@@ -38,6 +45,9 @@ struct Capture {
   // convergence.relative_error at the reference wavelength. convergence.relative_error is the least of those that
   // matter.
   std::vector<double> band_targets;
+  // Of each band; convergence.relative_error is then the target for its standard error over the root of that variance.
+  // Both 0: the band does not matter. Empty: not judged so.
+  std::vector<BandNoise> detector_noise;
   bool own_convergence = false;  // Sensor::convergence says for each problem what it may take
   bool neighbours = true;        // problems beside each other look at things beside each other
   // A problem's radiance may be split into bins, each with a mean of its own. time: the window is cut into equal parts,

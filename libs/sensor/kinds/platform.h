@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sensor/detector.h"
+#include "sensor/detectors/detectors.h"
 #include "sensor/lens.h"
 #include "sensor/mount.h"
 #include "sensor/psf.h"
@@ -51,6 +51,7 @@ struct FocalArray {
   Readout readout;
   uint32_t time_bins = 1;  // parts of the exposure, each with a picture of its own
   std::optional<DetectorSpec> detector;
+  std::shared_ptr<const ArrayDetector> reader;  // null without counts
   ImageWishes wishes;
   size_t instrument = 0;
   std::vector<size_t> segments;
@@ -66,6 +67,7 @@ struct Segment {
   size_t radiance_bands = 0;
   Convergence convergence;           // of its chips without one of their own
   std::vector<double> band_targets;  // of the radiance bands; empty = the reference decides
+  std::vector<BandNoise> detector_noise;  // of all bands; empty = the error is judged beside radiance
   std::vector<double> electrons;     // per W/(m2 um) s m2 of irradiance, of each band
   std::unique_ptr<const PointSpread> psf;
 };
@@ -131,6 +133,8 @@ std::string lines_text(const PlatformSpec& spec, size_t task, size_t array, cons
 std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result, uint64_t read_out);
 // Noise of a band's detectors on the axis, of a chip of gain 1. Error: a NETD that cannot be.
 NoiseAtBackground noise_of(const PlatformSpec& spec, const Segment& segment, size_t band);
+// Noise of one reading, in radiance, of all bands of a segment; 0 of the listed ones, which nothing counts.
+std::vector<BandNoise> detector_noise_of(const PlatformSpec& spec, const Segment& segment);
 // For headers: NETD of every band; empty where there is no background.
 std::string noise_text(const PlatformSpec& spec, const Segment& segment);
 // platform_log.cpp: pose and time of an instrument over the tasks, as CSV.

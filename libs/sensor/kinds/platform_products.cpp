@@ -60,6 +60,18 @@ NoiseAtBackground noise_of(const PlatformSpec& spec, const Segment& segment, siz
   return noise_at_background(d, factor * L, factor / thermometer.read(L).slope, array.readout.exposure());
 }
 
+std::vector<BandNoise> detector_noise_of(const PlatformSpec& spec, const Segment& segment) {
+  const FocalArray& array = spec.arrays[segment.array];
+  const DetectorNoise noise = array.reader->noise(array.readout.exposure(),
+                                                  array.pitch.x * array.pitch.y * array.detector->fill_factor);
+  std::vector<BandNoise> of(segment.radiance_bands);
+  for (const double electrons : segment.electrons) {
+    const double k = electrons_per_radiance(spec, array) * electrons;
+    of.push_back(k > 0 ? BandNoise{noise.constant / (k * k), noise.linear / k} : BandNoise{});
+  }
+  return of;
+}
+
 std::string noise_text(const PlatformSpec& spec, const Segment& segment) {
   const auto& detector = spec.arrays[segment.array].detector;
   if (!detector || !(detector->background > 0)) return {};
@@ -72,62 +84,108 @@ std::string noise_text(const PlatformSpec& spec, const Segment& segment) {
   return out;
 }
 
+namespace {
+
+// The same on a pixel, of `axis` on the axis: gain of its chip and fall-off.
+double electrons_at(const PlatformSpec& spec, const FocalArray& array, const DetectorPlace& place, double axis) {
+  const Lens& lens = spec.instruments[array.instrument].lens;
+  const double cosine = lens.cos4 ? -lens.look(place.place).z : 1;
+  return axis * place.chip->gain * cosine * cosine * cosine * cosine;
+}
+
+// Read-outs of the same task right before a capture, and the time from one to the next.
+void set_before(const PlatformSpec& spec, const CaptureResult& result, ArrayLight& light) {
+  const auto& captures = spec.tasks[result.task].captures;
+  const auto& parts = spec.parts[result.task];
+  const PlatformSpec::Part& own = parts[result.capture];
+  const double begin = captures[result.capture].window.begin;
+  for (size_t c = result.capture; c-- > 0;) {
+    if (parts[c].array != own.array || parts[c].segment != own.segment) continue;
+    if (light.before++ == 0) light.period = begin - captures[c].window.begin;
+  }
+}
+
+// The light on an array but for its electrons.
+ArrayLight light_of(const PlatformSpec& spec, const Segment& segment, const CaptureResult& result, uint64_t read_out) {
+  const FocalArray& array = spec.arrays[segment.array];
+  ArrayLight light;
+  light.columns = result.columns, light.rows = result.rows;
+  light.electrons.assign(result.problems(), 0);
+  light.sites.resize(result.problems());
+  light.exposure = array.readout.exposure();
+  light.read_out = read_out;
+  light.lines = array.readout.kind == Readout::Kind::line;
+  light.pitch = array.pitch;
+  if (array.reader->whole_frames()) set_before(spec, result, light);
+  return light;
+}
+
+void add_kelvin(const std::vector<BandThermometer>& thermometers, const DetectorSpec& d, double exposure,
+                std::span<const double> per_radiance, std::vector<Product>& products) {
+  const std::vector<double>& dn = products.back().values;
+  const size_t bands = thermometers.size();
+  Product kelvin{"apparent_temperature", "K", false, products.back().bands, std::vector<double>(dn.size())};
+  for (size_t k = 0; k < dn.size(); ++k)
+    kelvin.values[k] = thermometers[k % bands].read(d.signal_of(dn[k], exposure) / per_radiance[k]).kelvin;
+  products.push_back(std::move(kelvin));
+}
+
+}  // namespace
+
 std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result,
                             uint64_t read_out) {
   const FocalArray& array = spec.arrays[segment.array];
   if (!array.detector) return {};
-  const Lens& lens = spec.instruments[array.instrument].lens;
-  const Detector detector(*array.detector);
-  const DetectorSpec& d = detector.spec();
+  const DetectorSpec& d = *array.detector;
   const size_t bands = segment.radiance_bands, n = result.problems();
   const double axis = electrons_per_radiance(spec, array), exposure = array.readout.exposure();
-  Product electrons{"electrons", "electrons", false, {}, std::vector<double>(n * bands)};
-  Product counts{"dn", "DN", true, {}, std::vector<double>(n * bands)};
-  Product kelvin{"apparent_temperature", "K", false, {}, std::vector<double>(d.background > 0 ? n * bands : 0)};
-  std::vector<double> more(bands, 0.0);
+  std::vector<Product> out;
+  out.push_back({"electrons", "electrons", false, {}, std::vector<double>(n * bands)});
+  for (size_t b = 0; b < bands; ++b) out[0].bands.push_back(segment.bands[b].name);
+  Product dn{"dn", "DN", true, out[0].bands, {}}, counts{"counts", "counts", true, out[0].bands, {}};
   std::vector<BandThermometer> thermometers;
-  for (size_t b = 0; b < bands; ++b) {
-    electrons.bands.push_back(segment.bands[b].name);
-    if (!(d.background > 0)) continue;
-    more[b] = noise_of(spec, segment, b).more;
-    thermometers.emplace_back(segment.bands[bands + b]);
-  }
-  kelvin.bands = counts.bands = electrons.bands;
-  if (!d.counts()) counts.values.clear();
+  std::vector<double> per_radiance(n * bands);
   const Capture& capture = spec.tasks[result.task].captures[result.capture];
-  for (size_t i = 0; i < n; ++i) {
-    const Exposed from = exposed(spec, capture, i);
-    const DetectorPlace place = place_of(array, from.column, from.row, 0.5, 0.5);
-    const double cosine = lens.cos4 ? -lens.look(place.place).z : 1;
-    const double factor = axis * place.chip->gain * cosine * cosine * cosine * cosine;
-    const bool bad =
-        std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{from.column, from.row}) != d.bad.end();
-    for (size_t b = 0; b < bands; ++b) {
+  ArrayLight light;
+  if (array.reader) light = light_of(spec, segment, result, read_out);
+  for (size_t b = 0; b < bands; ++b) {
+    for (size_t i = 0; i < n; ++i) {
+      const Exposed from = exposed(spec, capture, i);
+      const DetectorPlace place = place_of(array, from.column, from.row, 0.5, 0.5);
       // The photon bands follow the listed ones; every band has detectors of its own.
-      double signal = 0;
+      double radiance = 0;
       for (size_t t = 0; t < result.bins; ++t)
-        signal += result.radiance[(i * result.channels * result.bins + t) * result.bands + bands + b] /
-                  static_cast<double>(result.bins);
-      signal *= factor * segment.electrons[b];
-      electrons.values[i * bands + b] = signal;
-      if (!d.counts()) continue;
-      const uint64_t own = hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column);
-      Detector::Character character = detector.character(own);
-      character.dead = character.dead || bad;
-      const Detector::Reading read = detector.read(signal, exposure, character, hash_of(own, read_out, i), more[b]);
-      if (read.clipped) result.quality[i] |= quality_clipped;
-      counts.values[i * bands + b] = read.counts;
-      if (!thermometers.empty())
-        kelvin.values[i * bands + b] =
-            thermometers[b].read(detector.signal_of(read.counts, exposure) / (factor * segment.electrons[b])).kelvin;
+        radiance += result.radiance[(i * result.channels * result.bins + t) * result.bands + bands + b] /
+                    static_cast<double>(result.bins);
+      const double factor = electrons_at(spec, array, place, axis);
+      per_radiance[i * bands + b] = factor * segment.electrons[b];
+      const double signal = radiance * (factor * segment.electrons[b]);
+      out[0].values[i * bands + b] = signal;
+      if (!array.reader) continue;
+      light.electrons[i] = signal;
+      light.sites[i] = {hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column), from.column,
+                        static_cast<uint32_t>(place.chip - array.chips.data()),
+                        std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{from.column, from.row}) !=
+                            d.bad.end()};
     }
+    if (!array.reader) continue;
+    light.array = hash_of(segment.array, b);
+    light.more = d.background > 0 ? noise_of(spec, segment, b).more : 0;
+    const ArrayReading reading = array.reader->read(light);
+    const auto spread = [&](const std::vector<double>& of, std::vector<double>& into) {
+      if (into.empty()) into.resize(of.empty() ? 0 : n * bands);
+      for (size_t i = 0; i < of.size(); ++i) into[i * bands + b] = of[i];
+    };
+    spread(reading.dn, dn.values), spread(reading.counts, counts.values);
+    for (size_t i = 0; i < n; ++i)
+      if (reading.clipped[i]) result.quality[i] |= quality_clipped;
+    if (d.background > 0) thermometers.emplace_back(segment.bands[bands + b]);
   }
   drop_truth_of(result, segment.bands, bands);
   keep_bands(result, bands);
-  std::vector<Product> out;
-  out.push_back(std::move(electrons));
-  if (d.counts()) out.push_back(std::move(counts));
-  if (!thermometers.empty()) out.push_back(std::move(kelvin));
+  if (!dn.values.empty()) out.push_back(std::move(dn));
+  if (!thermometers.empty()) add_kelvin(thermometers, d, exposure, per_radiance, out);
+  if (!counts.values.empty()) out.push_back(std::move(counts));
   return out;
 }
 

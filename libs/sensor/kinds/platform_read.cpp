@@ -84,6 +84,28 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
     throw chips->error("a whisk read-out has one column of detectors");
 }
 
+// Key `paths: {detector_noise: N}`: the share of the detector's noise that the standard error is to reach.
+void read_noise_target(const Params& p, const PlatformSpec& spec, Segment& s) {
+  const auto paths = p.find("paths");
+  const auto share =
+      paths && paths->kind() == Params::Kind::map ? paths->find("detector_noise") : std::nullopt;
+  if (!share) return;
+  const FocalArray& array = spec.arrays[s.array];
+  for (const char* other : {"relative_error", "absolute_floor", "bands"})
+    if (paths->has(other))
+      throw paths->at(other).error("the error is judged beside the detector's noise already",
+                                   "detector_noise alone, or without it");
+  if (!array.reader)
+    throw share->error("there is no detector whose noise is known", "detector: {gain_e_per_dn: N, ...} in the array");
+  if (array.time_bins > 1)
+    throw share->error("parts of an exposure are not read out one by one", "leave out time_bins");
+  for (size_t i = 0; i < s.chips; ++i)
+    if (array.chips[s.first_chip + i].convergence)
+      throw share->error("a chip of the array has `paths` of its own", "one of them");
+  s.convergence.relative_error = share->as_number_in(1e-3, 10, "(share of the detector's noise)");
+  s.detector_noise = detector_noise_of(spec, s);
+}
+
 void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, size_t chips, const Params& p,
                  const Params& bands, const SensorContext& context) {
   FocalArray& array = spec.arrays[array_number];
@@ -110,6 +132,7 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
       }
       s.electrons.push_back(electrons);
     }
+  read_noise_target(p, spec, s);
   // An array may have a pattern of its own; else the instrument's holds.
   s.psf = read_psf(p.has("psf") ? p : spec.instruments[array.instrument].text, context, lens.f_number(),
                    lens.obscuration, spec.states.back());
@@ -184,7 +207,8 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   array.time_bins = static_cast<uint32_t>(p.integer("time_bins", 1, 10000, 1));
   if (array.time_bins > 1 && array.readout.kind != Readout::Kind::global)
     throw p.at("time_bins").error("time bins need a global read-out");
-  array.detector = read_detector(p, context);
+  if (auto made = read_detector(p, context))
+    array.detector = std::move(made->spec), array.reader = std::move(made->reader);
   check_parts(array, p);
   const Lens& lens = spec.instruments[instrument].lens;
   if (array.detector && !(lens.aperture > 0))
@@ -192,6 +216,9 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
         .error("a detector needs to know how much light comes in", "give the instrument aperture_mm or f_number");
   if (array.detector && !(array.readout.integration > 0))
     throw p.at("detector").error("a detector needs an integration time", "integration_time_s: N");
+  if (array.reader && array.reader->whole_frames() && (array.scans() || array.chips.size() > 1))
+    throw p.at("detector").error("light goes from pixel to pixel in this kind of detector, which wants whole frames",
+                                 "readout: {kind: global} or rolling, and one chip");
   check_lens(array, lens, p);
   spec.arrays.push_back(std::move(array));
   const size_t number = spec.arrays.size() - 1, chips = own_bands.size();

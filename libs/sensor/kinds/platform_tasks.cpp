@@ -59,6 +59,7 @@ void add_event(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& 
     c.state = s;
     c.convergence = spec.segments[s].convergence;
     c.band_targets = spec.segments[s].band_targets;
+    c.detector_noise = spec.segments[s].detector_noise;
     for (size_t chip = 0; chip < spec.segments[s].chips; ++chip)
       c.own_convergence = c.own_convergence || array.chips[spec.segments[s].first_chip + chip].convergence.has_value();
     if (array.time_bins > 1) c.bin_by = Capture::BinBy::time, c.bins = array.time_bins;

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "math/stats.h"
-#include "sensor/detector.h"
+#include "math/variates.h"
 #include "spectral/planck.h"
 #include "support/message_of.h"
 

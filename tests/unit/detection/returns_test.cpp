@@ -8,7 +8,7 @@
 #include "detection/decompose.h"
 #include "detection/variates.h"
 #include "math/stats.h"
-#include "sensor/detector.h"
+#include "math/variates.h"
 #include "spectral/planck.h"
 
 namespace suite {
