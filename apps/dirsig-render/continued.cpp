@@ -73,7 +73,20 @@ void check_budget(const Budget& asked, Budget stored, const std::string& path) {
                      "--target-error and what belongs to it, or give the same");
 }
 
-Budget with_more(const RenderOptions& o, const JobOptions& options, Budget budget) {
+// A stored pilot tells what its own kind of target needs.
+void check_kind_of_target(const Simulation& sim, const Budget& asked, const Budget& stored) {
+  if (!asked.relative_error || stored.relative_error) return;
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& capture : task.captures)
+        if (!capture.detector_noise.empty())
+          throw UsageError("sensor '" + sensor->name() +
+                           "' was planned by its detector's noise, and its pilot does not tell what --target-error "
+                           "needs: leave it out, or start anew");
+}
+
+Budget with_more(const RenderOptions& o, const Simulation& sim, const JobOptions& options, Budget budget) {
+  check_kind_of_target(sim, options.budget, budget);
   budget.more += static_cast<uint32_t>(o.more);
   if (options.budget.relative_error) budget.relative_error = options.budget.relative_error;
   return budget;
@@ -95,7 +108,7 @@ void check_replaced(const std::string& path, const StateIdentity& identity, cons
            "give each part a folder of its own with -o");
 }
 
-StateSetup begin(const RenderOptions& o, const std::string& here, const StateIdentity& identity,
+StateSetup begin(const RenderOptions& o, const Simulation& sim, const std::string& here, const StateIdentity& identity,
                  const JobOptions& options) {
   StateSetup setup{StateUse::start, options.budget};
   if (options.share) {
@@ -110,7 +123,7 @@ StateSetup begin(const RenderOptions& o, const std::string& here, const StateIde
   if (head.budget.seconds > 0 && !head.cap)
     refuse(path, "has a budget of time that is not yet turned into paths", "finish it with --resume");
   setup.from = {path};
-  setup.budget = o.more >= 0 ? with_more(o, options, head.budget) : head.budget;
+  setup.budget = o.more >= 0 ? with_more(o, sim, options, head.budget) : head.budget;
   if (o.more < 0) check_budget(options.budget, head.budget, path);
   return setup;
 }
@@ -130,8 +143,8 @@ StateSetup join(const RenderOptions& o, const std::string& path, const StateIden
 }
 
 // Goes on with the state that is there, as it was begun or with more paths.
-StateSetup go_on(const RenderOptions& o, const std::string& folder, const StateIdentity& identity,
-                 JobOptions& options) {
+StateSetup go_on(const RenderOptions& o, const Simulation& sim, const std::string& folder,
+                 const StateIdentity& identity, JobOptions& options) {
   const bool more = o.more >= 0;
   const std::string path = state_in(folder, "to continue");
   const StateHead head = read_state_head(path, identity);
@@ -144,7 +157,7 @@ StateSetup go_on(const RenderOptions& o, const std::string& folder, const StateI
     refuse(path, "is the state of " + whose(head) + ", not of " + options.share->text(),
            "leave out --part, the state knows it");
   if (head.part) options.share = head.part->share;
-  return {more ? StateUse::extend : StateUse::resume, more ? with_more(o, options, head.budget) : head.budget};
+  return {more ? StateUse::extend : StateUse::resume, more ? with_more(o, sim, options, head.budget) : head.budget};
 }
 
 }  // namespace
@@ -162,8 +175,8 @@ std::unique_ptr<StateStore> open_store(const RenderOptions& o, const std::string
   const std::string path = in_folder(folder, kState);
   const StateIdentity identity = identity_of(sim, options);
   StateSetup setup = !o.merge.empty()                       ? join(o, path, identity, options)
-                     : o.resume || (more && o.plan.empty()) ? go_on(o, folder, identity, options)
-                                                            : begin(o, path, identity, options);
+                     : o.resume || (more && o.plan.empty()) ? go_on(o, sim, folder, identity, options)
+                                                            : begin(o, sim, path, identity, options);
   options.budget = setup.budget;
   return make_state(path, identity, std::move(setup));
 }

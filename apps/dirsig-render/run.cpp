@@ -40,6 +40,7 @@
 #include "scheduler/moments.h"
 #include "scheduler/prepass.h"
 #include "scheduler/through_tables.h"
+#include "sensor/detectors/detectors.h"
 #include "sensor/plugin.h"
 #include "start.h"
 #include "study.h"
@@ -178,6 +179,7 @@ std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
   if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return print(light_rows().list());
   if (o.list_detectors) return print(lidar_detectors().list());
+  if (o.list_image_detectors) return print(array_detectors().list());
   if (o.list_truth) return print(truth_rows().list());
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());

@@ -61,7 +61,7 @@ class Result:
 
         Variables: `radiance` (or `reflectance`, `brightness_temperature`; of instruments at points `value`) and
         `standard_error` (band, y, x); `quality` (flags), `material` and `tag` (classes; 0 = nothing); `truth_NAME` for
-        what the truth holds (NaN where nothing was met); `electrons` and `dn` of detectors. Counts of uint16 come in their
+        what the truth holds (NaN where nothing was met); `electrons`, `dn` and `counts` of detectors. Counts of uint16 come in their
         unit, other numbers as they are stored. Coordinates: `band`, `wavelength_um`, `fwhm_um`; `x`, `y`, `spatial_ref` of
         maps; with a geolocation `longitude`, `latitude`, `height_m` (of a scene without an origin `east_m`, `north_m`,
         `up_m`); `time` (UTC) where there is a date. KeyError: no such image; FormatError: a file is damaged.
@@ -75,7 +75,7 @@ class Result:
             error.attrs["standard_errors_of_95_percent"] = float(interval[1])
         dataset["standard_error"] = error
         dataset["quality"] = _flat(open_envi(self.folder / f"{name}_quality.img"))
-        for product in ("electrons", "dn", "material", "tag"):
+        for product in ("electrons", "dn", "counts", "material", "tag"):
             if (array := self._beside(name, product, main)) is not None:
                 dataset[product] = _flat(array) if product in ("material", "tag") else array.drop_vars("band")
         if (truth := self._beside(name, "truth", main)) is not None:

@@ -8,6 +8,7 @@ LISTS = (("reference/truth.md", "Truth", "What else a pixel can hold, by the `tr
          ("reference/channels.md", "Channels", "Parts of the light as further bands, by the `channels` of a sensor.", "dirsig-render", "--list-channels"),
          ("reference/sensor_kinds.md", "Kinds of sensors", "What `kind` of a sensor may be; keys: [sensors](sensors.md).", "dirsig-render", "--list-sensors"),
          ("reference/detector_kinds.md", "Kinds of detectors", "What `kind` of a detector of laser pulses may be; keys: [detection](detection.md).", "dirsig-render", "--list-detectors"),
+         ("reference/image_detector_kinds.md", "Kinds of image detectors", "What `kind` of the detector of an array may be; keys: [sensors](sensors.md).", "dirsig-render", "--list-image-detectors"),
          ("reference/sources.md", "Sources of light", "Kinds of suns, skies and lamps of a simulation text.", "dirsig-render", "--list-sources"),
          ("reference/models.md", "Models of materials", "Scattering models, phase functions and temperature models with their parameters.",
           "scene-prep", "--list-models"))
