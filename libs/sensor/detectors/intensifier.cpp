@@ -101,7 +101,7 @@ class Intensifier final : public ArrayDetector {
     const double f2 = tube_.excess, g = tube_.gain, step = d_.gain / g;
     return {f2 * tube_.background * area * exposure + (d_.dark_current * exposure + d_.read_noise * d_.read_noise) / (g * g) +
                 step * step / 12,
-            f2};
+            f2 + 1 / g};
   }
 
  private:

@@ -10,6 +10,7 @@
 #include "formats/envi/envi.h"
 #include "formats/raster/raster.h"
 #include "motion/scene_frame.h"
+#include "sensor/detectors/detectors.h"
 #include "support/programs_kit.h"
 
 namespace suite {
@@ -153,6 +154,33 @@ TEST_F(SensorOutput, ClippedCountsAreFlaggedAndTold) {
     EXPECT_EQ(clipped, 0) << name;
     EXPECT_THAT(said, testing::Not(HasSubstr("clipped")));
   }
+}
+
+// Detectors that count write what they count; a run that was planned by noise is continued as it was planned.
+TEST_F(SensorOutput, CountsAndPlansOfDetectorsThatCount) {
+  const std::string text =
+      kLight + "sensors:\n" + kFlight +
+      "    tasks: [{start: 1}]\n    instruments:\n      - {focal_length_mm: 50, f_number: 4, arrays: [{columns: 16, "
+      "rows: 8, pitch_um: 50, integration_time_s: 1.0e-9, paths: {min: 16, max: 4096, detector_noise: 0.1}, " +
+      kBand + ", detector: {kind: spad, frames: 255, quantum_efficiency: 0.5, dark_rate_hz: 100}}]}\n";
+  write_file(*folder_ / "counting.yaml", std::string_view(text));
+  const CommandResult first = run("dirsig-render counting.yaml --state -o counting");
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_THAT(first.err, HasSubstr("10 % of the detectors' noise"));
+  const EnviImage counts(*folder_ / "counting/uas_counts.img");
+  EXPECT_EQ(counts.header().type, EnviType::uint16);
+  for (const double v : counts.read_all()) EXPECT_LE(v, 255);
+  EXPECT_TRUE(there("counting/uas_electrons.img"));
+  EXPECT_FALSE(there("counting/uas_dn.img"));
+  const std::vector<double> before = EnviImage(*folder_ / "counting/uas.img").read_all();
+  EXPECT_EQ(run("dirsig-render counting.yaml --more 0 -o counting").code, 0);
+  EXPECT_EQ(EnviImage(*folder_ / "counting/uas.img").read_all(), before);
+  const CommandResult other = run("dirsig-render counting.yaml --more 0 --target-error 0.01 -o counting");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("planned by its detector's noise"));
+  const CommandResult kinds = run("dirsig-render --list-image-detectors");
+  EXPECT_EQ(kinds.code, 0);
+  for (const std::string& kind : array_detectors().names()) EXPECT_THAT(kinds.out, HasSubstr(kind));
 }
 
 TEST_F(SensorOutput, TruthIsWhatIsThere) {
