@@ -81,7 +81,7 @@ void check_kind_of_target(const Simulation& sim, const Budget& asked, const Budg
       for (const Capture& capture : task.captures)
         if (!capture.detector_noise.empty())
           throw UsageError("sensor '" + sensor->name() +
-                           "' was planned by its detector's noise, and its pilot does not tell what --target-error "
+                           "' was planned by its detector's noise, and its pilot does not hold what --target-error "
                            "needs: leave it out, or start anew");
 }
 

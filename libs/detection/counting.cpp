@@ -4,7 +4,6 @@
 #include <cmath>
 #include <queue>
 
-
 namespace suite {
 
 namespace {

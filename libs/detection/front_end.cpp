@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace suite {
 
 FrontEnd read_front_end(const Params& p) {

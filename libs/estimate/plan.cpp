@@ -42,8 +42,7 @@ void pool_band(const Capture& capture, const std::vector<Moments>& of, const Jud
           ++n;
         }
       const size_t problem = static_cast<size_t>(r * columns + k);
-      needs[problem] =
-          std::max(needs[problem], need(judge, variance / n, mean / n, goals.of(problem).absolute_floor));
+      needs[problem] = std::max(needs[problem], need(judge, variance / n, mean / n, goals.of(problem).absolute_floor));
     }
 }
 

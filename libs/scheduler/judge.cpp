@@ -79,9 +79,10 @@ std::string Judge::target_text() const {
 
 std::string Judge::saved_text() const {
   if (!(noise_target_ > 0)) return {};
-  return strf("; by the detectors' noise %.3g paths were run, where a standard error of %g %% of the radiance would "
-              "take %.3g (%.3g times as many)",
-              paths_by_noise_, 100 * kUsualTarget, paths_by_radiance_, paths_by_radiance_ / paths_by_noise_);
+  return strf(
+      "; by the detectors' noise %.3g paths were run, where a standard error of %g %% of the radiance would "
+      "take %.3g (%.3g times as many)",
+      paths_by_noise_, 100 * kUsualTarget, paths_by_radiance_, paths_by_radiance_ / paths_by_noise_);
 }
 
 void Judge::finish(const JobOptions& options, uint32_t cap, JobReport& report) const {
@@ -104,9 +105,9 @@ void Judge::finish(const JobOptions& options, uint32_t cap, JobReport& report) c
         "rare events carry the light",
         options.pipeline.change);
   else if (with_target_ > 0)
-    s = strf(
-        "%s, or by its maximum of paths (%.1f %% of the problems); %.1f %% of the problems are at the target%s",
-        target_text().c_str(), 100 * at_maximum_ / with_target_, 100 * report.share_at_target, saved_text().c_str());
+    s = strf("%s, or by its maximum of paths (%.1f %% of the problems); %.1f %% of the problems are at the target%s",
+             target_text().c_str(), 100 * at_maximum_ / with_target_, 100 * report.share_at_target,
+             saved_text().c_str());
   else
     s = "every problem ran the paths it was given";
   if (report.time_cap)

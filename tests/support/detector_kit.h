@@ -1,7 +1,12 @@
-// Detectors of images from text, under even light.
+// Detectors of images from text, under even light, and what their readings are held against.
 #pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "math/stats.h"
 #include "sensor/detectors/detectors.h"
 
 namespace suite::test {
@@ -32,6 +37,43 @@ inline ArrayLight even_light(uint32_t columns, uint32_t rows, double electrons, 
   for (uint32_t r = 0; r < rows; ++r)
     for (uint32_t c = 0; c < columns; ++c) light.sites.push_back({hash_of(r, c), c, 0, false});
   return light;
+}
+
+// Standard errors that a number may be off, and the least chance of a histogram.
+inline constexpr double kSure = 4.5, kChance = 1e-4;
+
+inline RunningStats stats_of(const std::vector<double>& values) {
+  RunningStats s;
+  for (const double v : values) s.add(v);
+  return s;
+}
+// Mean and variance, of a distribution whose fourth moment makes the variance's error `kurtosis` (3 = normal).
+inline void expect_moments(const std::vector<double>& values, double mean, double variance, double kurtosis = 3) {
+  const RunningStats s = stats_of(values);
+  const auto n = static_cast<double>(values.size());
+  EXPECT_NEAR(s.mean(), mean, kSure * std::sqrt(variance / n));
+  EXPECT_NEAR(s.variance() / variance, 1, kSure * std::sqrt((kurtosis - 1) / n));
+}
+// Chance of a histogram with these upper ends of its cells (the last cell has no end), for a distribution function.
+template <class Below>
+double chance(const std::vector<double>& values, const std::vector<double>& ends, const Below& below) {
+  std::vector<double> observed(ends.size() + 1, 0), expected;
+  for (const double v : values)
+    ++observed[static_cast<size_t>(std::upper_bound(ends.begin(), ends.end(), v) - ends.begin())];
+  double before = 0;
+  for (const double end : ends) {
+    const double p = below(end);
+    expected.push_back((p - before) * static_cast<double>(values.size()));
+    before = p;
+  }
+  expected.push_back((1 - before) * static_cast<double>(values.size()));
+  return chi_square_test(observed, expected, 10);
+}
+
+// Signal over noise of so many electrons.
+inline double snr(const std::string& keys, double n) {
+  const DetectorNoise noise = detector_of(keys).reader->noise(1, 1e-10);
+  return n / std::sqrt(noise.constant + noise.linear * n);
 }
 
 }  // namespace suite::test

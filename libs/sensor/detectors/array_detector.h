@@ -1,7 +1,7 @@
 // What the detectors of an image share: light on an array, readings, one interface for all kinds.
 //
-// Every random number is drawn from a generator whose key is the seed, the detector and the read-out, so readings do not
-// depend on the order or the number of threads.
+// Every random number is drawn from a generator whose key is the seed, the detector and the read-out, so readings do
+// not depend on the order or the number of threads.
 #pragma once
 #include <memory>
 

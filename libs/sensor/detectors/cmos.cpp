@@ -55,8 +55,7 @@ class Cmos final : public ArrayDetector {
   }
   double column(const ArrayLight& light, uint32_t c) const {
     double sum = 0;
-    if (keys_.column_noise > 0)
-      sum += keys_.column_noise * deviate(kColumn, hash_of(light.array, light.read_out, c));
+    if (keys_.column_noise > 0) sum += keys_.column_noise * deviate(kColumn, hash_of(light.array, light.read_out, c));
     if (keys_.column_offset > 0) sum += keys_.column_offset * deviate(kOffset, hash_of(light.array, c));
     return sum;
   }

@@ -4,8 +4,8 @@ namespace suite {
 
 const Registry<ArrayDetectorRow>& array_detectors() {
   static const Registry<ArrayDetectorRow> rows("kind of detector", "",
-                                               {ccd_row(), emccd_row(), photon_counting_row(), scmos_row(),
-                                                qcmos_row(), spad_row(), intensifier_row(), ingaas_row()});
+                                               {ccd_row(), emccd_row(), photon_counting_row(), scmos_row(), qcmos_row(),
+                                                spad_row(), intensifier_row(), ingaas_row()});
   return rows;
 }
 

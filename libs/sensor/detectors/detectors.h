@@ -14,8 +14,7 @@ struct ReadDetector {
 };
 
 // make: fills the spec, which read_light() has been given already, and makes the reader.
-using ArrayDetectorRow =
-    RegistryRow<std::shared_ptr<const ArrayDetector>(const Params& params, DetectorSpec& spec)>;
+using ArrayDetectorRow = RegistryRow<std::shared_ptr<const ArrayDetector>(const Params& params, DetectorSpec& spec)>;
 const Registry<ArrayDetectorRow>& array_detectors();
 
 // Reads key `detector`, of kind `ccd` unless it says; nothing when absent. Located Error for anything wrong.

@@ -35,8 +35,8 @@ std::vector<double> over_disk(const std::vector<double>& light, uint32_t columns
       return upto[c] + (x - static_cast<double>(c)) * (upto[c + 1] - upto[c]);
     };
     for (long off = std::max(-reach, -from); off <= std::min(reach, rows - 1 - from); ++off) {
-      const double low = (static_cast<double>(off) - 0.5) / radius.y, high = (static_cast<double>(off) + 0.5) / radius.y,
-                   area = area_below(high) - area_below(low);
+      const double low = (static_cast<double>(off) - 0.5) / radius.y,
+                   high = (static_cast<double>(off) + 0.5) / radius.y, area = area_below(high) - area_below(low);
       if (!(area > 0)) continue;
       const double half = 0.5 * area / (std::min(high, 1.0) - std::max(low, -1.0)) * radius.x;
       for (long c = 0; c < width; ++c) {

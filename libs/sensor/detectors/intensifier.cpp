@@ -22,20 +22,20 @@ namespace suite {
 
 namespace {
 
-constexpr double kEvents = 10;         // photoelectrons of a pixel that are followed one by one
-constexpr int kMostBefore = 16;        // read-outs that light may be left over from
-constexpr double kLeast = 1e-4;        // share of the light of one read-out that is followed into a later one
-constexpr double kLampKelvin = 2856;   // CIE illuminant A, that luminous sensitivities are told for
-constexpr double kReach = 5;           // standard deviations of a spot
+constexpr double kEvents = 10;                   // photoelectrons of a pixel that are followed one by one
+constexpr int kMostBefore = 16;                  // read-outs that light may be left over from
+constexpr double kLeast = 1e-4;                  // share of the light of one read-out that is followed into a later one
+constexpr double kLampKelvin = 2856;             // CIE illuminant A, that luminous sensitivities are told for
+constexpr double kReach = 5;                     // standard deviations of a spot
 constexpr double kElementary = 1.602176634e-19;  // C, SI
 
 struct Tube {
-  double background = 0;           // photoelectrons/(s m2)
-  double gain = 1;                 // camera electrons of one photoelectron, mean
-  double excess = 1;               // F^2 of one photoelectron's pulse
-  double halo = 0, radius = 0;     // share; m
-  double blur = 0, decay = 0;      // m, standard deviation; s, to 1/e
-  double most_rate = 0;            // photoelectrons/s of a pixel in the mean over the frame, that gating holds; 0: none
+  double background = 0;        // photoelectrons/(s m2)
+  double gain = 1;              // camera electrons of one photoelectron, mean
+  double excess = 1;            // F^2 of one photoelectron's pulse
+  double halo = 0, radius = 0;  // share; m
+  double blur = 0, decay = 0;   // m, standard deviation; s, to 1/e
+  double most_rate = 0;         // photoelectrons/s of a pixel in the mean over the frame, that gating holds; 0: none
 };
 
 // A Gaussian spot's share of the pixels along one axis, by integrals.
@@ -99,8 +99,8 @@ class Intensifier final : public ArrayDetector {
 
   DetectorNoise noise(double exposure, double area) const override {
     const double f2 = tube_.excess, g = tube_.gain, step = d_.gain / g;
-    return {f2 * tube_.background * area * exposure + (d_.dark_current * exposure + d_.read_noise * d_.read_noise) / (g * g) +
-                step * step / 12,
+    return {f2 * tube_.background * area * exposure +
+                (d_.dark_current * exposure + d_.read_noise * d_.read_noise) / (g * g) + step * step / 12,
             f2 + 1 / g};
   }
 
@@ -173,9 +173,10 @@ double electrons_per_lumen(const Curve& quantum_efficiency) {
   for (int i = 0; i <= 540; ++i) {  // 0.3 to 3 um
     um.push_back(0.3 + step * i), lamp.push_back(planck_radiance(um.back(), kLampKelvin));
     const double x = um.back();
-    const bool known = quantum_efficiency.is_constant() ||
-                       (x >= quantum_efficiency.low_um() && x <= quantum_efficiency.high_um());
-    electrons += (known ? quantum_efficiency.at(x) : 0) * lamp.back() * x * 1e-6 / (kPlanckConstant * kSpeedOfLight) * step;
+    const bool known =
+        quantum_efficiency.is_constant() || (x >= quantum_efficiency.low_um() && x <= quantum_efficiency.high_um());
+    electrons +=
+        (known ? quantum_efficiency.at(x) : 0) * lamp.back() * x * 1e-6 / (kPlanckConstant * kSpeedOfLight) * step;
   }
   return electrons / photopic(Curve(um, lamp, Outside::zero));
 }

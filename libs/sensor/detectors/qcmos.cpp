@@ -8,7 +8,7 @@
 namespace suite {
 
 ArrayDetectorRow qcmos_row() {
-  return {"qcmos", "CMOS that tells numbers of photoelectrons (Ma et al. 2017)", "DN, counts",
+  return {"qcmos", "CMOS that resolves numbers of photoelectrons (Ma et al. 2017)", "DN, counts",
           [](const Params& p, DetectorSpec& d) {
             read_pixels(p, "dark_current_e_s", d);
             read_converter(p, kDarkBias, d);

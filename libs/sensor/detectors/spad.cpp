@@ -123,7 +123,8 @@ class Spad final : public ArrayDetector {
     for (bool any = keys_.crosstalk > 0; any;) {
       any = false;
       for (size_t i = 0; i < light.size(); ++i)
-        if (fresh[i] > 0) neighbours(light, i, [&](size_t j) {
+        if (fresh[i] > 0)
+          neighbours(light, i, [&](size_t j) {
             if (blind[j]) return;
             const double armed = std::max(0.0, 1 - out.counts[j] * keys_.dead / light.exposure);
             next[j] += binomial(static_cast<uint32_t>(std::min(fresh[i], 4e9)), keys_.crosstalk * armed, random[i]);

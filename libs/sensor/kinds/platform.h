@@ -65,10 +65,10 @@ struct Segment {
   uint32_t first_column = 0, columns = 0;  // of the array's image
   std::vector<Band> bands;                 // as listed, then those that count photons when there is a detector
   size_t radiance_bands = 0;
-  Convergence convergence;           // of its chips without one of their own
-  std::vector<double> band_targets;  // of the radiance bands; empty = the reference decides
+  Convergence convergence;                // of its chips without one of their own
+  std::vector<double> band_targets;       // of the radiance bands; empty = the reference decides
   std::vector<BandNoise> detector_noise;  // of all bands; empty = the error is judged beside radiance
-  std::vector<double> electrons;     // per W/(m2 um) s m2 of irradiance, of each band
+  std::vector<double> electrons;          // per W/(m2 um) s m2 of irradiance, of each band
   std::unique_ptr<const PointSpread> psf;
 };
 

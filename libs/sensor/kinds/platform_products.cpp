@@ -62,8 +62,8 @@ NoiseAtBackground noise_of(const PlatformSpec& spec, const Segment& segment, siz
 
 std::vector<BandNoise> detector_noise_of(const PlatformSpec& spec, const Segment& segment) {
   const FocalArray& array = spec.arrays[segment.array];
-  const DetectorNoise noise = array.reader->noise(array.readout.exposure(),
-                                                  array.pitch.x * array.pitch.y * array.detector->fill_factor);
+  const DetectorNoise noise =
+      array.reader->noise(array.readout.exposure(), array.pitch.x * array.pitch.y * array.detector->fill_factor);
   std::vector<BandNoise> of(segment.radiance_bands);
   for (const double electrons : segment.electrons) {
     const double k = electrons_per_radiance(spec, array) * electrons;
@@ -163,10 +163,10 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
       out[0].values[i * bands + b] = signal;
       if (!array.reader) continue;
       light.electrons[i] = signal;
-      light.sites[i] = {hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column), from.column,
-                        static_cast<uint32_t>(place.chip - array.chips.data()),
-                        std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{from.column, from.row}) !=
-                            d.bad.end()};
+      light.sites[i] = {
+          hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column), from.column,
+          static_cast<uint32_t>(place.chip - array.chips.data()),
+          std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{from.column, from.row}) != d.bad.end()};
     }
     if (!array.reader) continue;
     light.array = hash_of(segment.array, b);

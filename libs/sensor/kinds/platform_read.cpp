@@ -87,8 +87,7 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
 // Key `paths: {detector_noise: N}`: the share of the detector's noise that the standard error is to reach.
 void read_noise_target(const Params& p, const PlatformSpec& spec, Segment& s) {
   const auto paths = p.find("paths");
-  const auto share =
-      paths && paths->kind() == Params::Kind::map ? paths->find("detector_noise") : std::nullopt;
+  const auto share = paths && paths->kind() == Params::Kind::map ? paths->find("detector_noise") : std::nullopt;
   if (!share) return;
   const FocalArray& array = spec.arrays[s.array];
   for (const char* other : {"relative_error", "absolute_floor", "bands"})
@@ -217,8 +216,9 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   if (array.detector && !(array.readout.integration > 0))
     throw p.at("detector").error("a detector needs an integration time", "integration_time_s: N");
   if (array.reader && array.reader->whole_frames() && (array.scans() || array.chips.size() > 1))
-    throw p.at("detector").error("light goes from pixel to pixel in this kind of detector, which wants whole frames",
-                                 "readout: {kind: global} or rolling, and one chip");
+    throw p.at("detector")
+        .error("light goes from pixel to pixel in this kind of detector, which wants whole frames",
+               "readout: {kind: global} or rolling, and one chip");
   check_lens(array, lens, p);
   spec.arrays.push_back(std::move(array));
   const size_t number = spec.arrays.size() - 1, chips = own_bands.size();

@@ -27,11 +27,15 @@ SourceSpecs sky(double radiance) {
   s.add(test::uniform_sky(radiance, false));
   return s;
 }
-std::string camera(const std::string& paths, const std::string& detector, const std::string& array = "columns: 48, rows: 32") {
-  return "kind: platform\nmotion: {kind: static, position_m: [0, 0, 10]}\ntasks: [{start: 0}]\ntruth: []\ninstruments:\n"
-         "  - focal_length_mm: 50\n    f_number: 1.4\n    arrays:\n      - {pitch_um: 10, integration_time_s: 0.0333, " +
+std::string camera(const std::string& paths, const std::string& detector,
+                   const std::string& array = "columns: 48, rows: 32") {
+  return "kind: platform\nmotion: {kind: static, position_m: [0, 0, 10]}\ntasks: [{start: 0}]\ntruth: "
+         "[]\ninstruments:\n"
+         "  - focal_length_mm: 50\n    f_number: 1.4\n    arrays:\n      - {pitch_um: 10, integration_time_s: "
+         "0.0333, " +
          array + ", paths: " + paths +
-         ", bands: [{name: pan, center_um: 0.7, fwhm_um: 0.4, shape: rectangular}], detector: {quantum_efficiency: 0.6, " +
+         ", bands: [{name: pan, center_um: 0.7, fwhm_um: 0.4, shape: rectangular}], detector: {quantum_efficiency: "
+         "0.6, " +
          detector + "}}\n";
 }
 double sum_of_paths(const test::Shot& shot) {
@@ -79,9 +83,9 @@ TEST(LowLight, ErrorsAreBelowTheShareOfTheNoise) {
   for (const double radiance : {2e-6, 2e-4, 2e-3}) {
     PlatformKit kit;
     const double share = 0.1;
-    const JobReport report = kit.render(corner(), sky(radiance), camera("{min: 16, max: 1048576, detector_noise: 0.1}",
-                                                                        "gain_e_per_dn: 1, read_noise_e: 1",
-                                                                        "columns: 16, rows: 12"));
+    const JobReport report = kit.render(corner(), sky(radiance),
+                                        camera("{min: 16, max: 1048576, detector_noise: 0.1}",
+                                               "gain_e_per_dn: 1, read_noise_e: 1", "columns: 16, rows: 12"));
     const test::Shot& s = kit.shots.at(0);
     double square = 0;
     for (size_t i = 0; i < s.result.problems(); ++i) {
@@ -108,8 +112,9 @@ TEST(LowLight, ABudgetWithATargetReplacesTheNoise) {
 // Frames without light: no error is claimed that is not there, the pilot is all that is run, counts are dark ones.
 TEST(LowLight, AFrameWithoutLight) {
   PlatformKit kit;
-  kit.render(corner(0), sky(1e-6), camera("{min: 16, max: 65536, detector_noise: 0.3}",
-                                         "kind: scmos, gain_e_per_dn: 0.1, read_noise_e: 1.5, dark_current_e_s: 30"));
+  kit.render(corner(0), sky(1e-6),
+             camera("{min: 16, max: 65536, detector_noise: 0.3}",
+                    "kind: scmos, gain_e_per_dn: 0.1, read_noise_e: 1.5, dark_current_e_s: 30"));
   const test::Shot& s = kit.shots.at(0);
   RunningStats dark;
   for (const double c : s.products[1].values) dark.add((c - 100) * 0.1);
@@ -145,14 +150,15 @@ TEST(LowLight, LampsFlickerInARollingShutter) {
     return of;
   };
   const std::vector<double> rolling = rows("columns: 1, rows: 100, readout: {kind: rolling, row_time_s: 0.0002}");
-  for (size_t r = 0; r < 100; ++r)
-    EXPECT_NEAR(rolling[r] / rolling[0], r % 50 < 25 ? 1 : 0.25, 0.02) << r;
-  const std::vector<double> whole = rows("columns: 1, rows: 100, readout: {kind: rolling, row_time_s: 0.0002}, name: whole");
+  for (size_t r = 0; r < 100; ++r) EXPECT_NEAR(rolling[r] / rolling[0], r % 50 < 25 ? 1 : 0.25, 0.02) << r;
+  const std::vector<double> whole =
+      rows("columns: 1, rows: 100, readout: {kind: rolling, row_time_s: 0.0002}, name: whole");
   for (size_t r = 0; r < 100; ++r) EXPECT_NEAR(whole[r] / (200 * 0.625 * rolling[0]), 1, 0.03) << r;
 }
 
 TEST(LowLight, MessagesOfArrays) {
-  const auto told = [](const std::string& paths, const std::string& detector, const std::string& array = "columns: 4, rows: 4") {
+  const auto told = [](const std::string& paths, const std::string& detector,
+                       const std::string& array = "columns: 4, rows: 4") {
     return message_of([&] { PlatformKit().make(camera(paths, detector, array)); });
   };
   const std::string tube = "kind: intensifier, gain_e: 100, gain_e_per_dn: 1";
@@ -160,10 +166,12 @@ TEST(LowLight, MessagesOfArrays) {
   EXPECT_THAT(told("16", tube, "rows: 4, chips: [{columns: 2, offset_mm: [-1, 0]}, {columns: 2, offset_mm: [1, 0]}]"),
               HasSubstr("whole frames"));
   EXPECT_EQ(told("16", tube), "no error");
-  EXPECT_THAT(told("{detector_noise: 0.3, relative_error: 0.01}", "gain_e_per_dn: 1"), HasSubstr("beside the detector's noise"));
+  EXPECT_THAT(told("{detector_noise: 0.3, relative_error: 0.01}", "gain_e_per_dn: 1"),
+              HasSubstr("beside the detector's noise"));
   EXPECT_THAT(told("{detector_noise: 0.3}", "fill_factor: 1"), HasSubstr("no detector whose noise"));
   EXPECT_THAT(told("{detector_noise: 0}", "gain_e_per_dn: 1"), HasSubstr("sensor.yaml:9:97"));
-  EXPECT_THAT(told("{detector_noise: 0.3}", "gain_e_per_dn: 1", "columns: 4, rows: 4, time_bins: 2"), HasSubstr("time_bins"));
+  EXPECT_THAT(told("{detector_noise: 0.3}", "gain_e_per_dn: 1", "columns: 4, rows: 4, time_bins: 2"),
+              HasSubstr("time_bins"));
   EXPECT_THAT(told("{detector_noise: 0.3}", "gain_e_per_dn: 1",
                    "rows: 4, chips: [{columns: 2, offset_mm: [-1, 0]}, {columns: 2, offset_mm: [1, 0], paths: 8}]"),
               HasSubstr("of its own"));

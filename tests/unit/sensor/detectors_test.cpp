@@ -8,47 +8,23 @@
 
 #include "math/stats.h"
 #include "math/variates.h"
-#include "sensor/detectors/disk.h"
 #include "sensor/detectors/register.h"
-#include "spectral/photopic.h"
 #include "support/detector_kit.h"
 #include "support/message_of.h"
 
 namespace suite {
 namespace {
 
+using test::chance;
 using test::detector_of;
 using test::even_light;
+using test::expect_moments;
+using test::kChance;
+using test::kSure;
+using test::snr;
+using test::stats_of;
 using testing::HasSubstr;
 
-constexpr double kSure = 4.5, kChance = 1e-4;
-
-RunningStats stats_of(const std::vector<double>& values) {
-  RunningStats s;
-  for (const double v : values) s.add(v);
-  return s;
-}
-// Mean and variance, of a distribution whose fourth moment makes the variance's error `kurtosis` (3 = normal).
-void expect_moments(const std::vector<double>& values, double mean, double variance, double kurtosis = 3) {
-  const RunningStats s = stats_of(values);
-  const auto n = static_cast<double>(values.size());
-  EXPECT_NEAR(s.mean(), mean, kSure * std::sqrt(variance / n));
-  EXPECT_NEAR(s.variance() / variance, 1, kSure * std::sqrt((kurtosis - 1) / n));
-}
-// Chance of a histogram with these upper ends of its cells (the last cell has no end), for a distribution function.
-template <class Below>
-double chance(const std::vector<double>& values, const std::vector<double>& ends, const Below& below) {
-  std::vector<double> observed(ends.size() + 1, 0), expected;
-  for (const double v : values) ++observed[static_cast<size_t>(std::upper_bound(ends.begin(), ends.end(), v) - ends.begin())];
-  double before = 0;
-  for (const double end : ends) {
-    const double p = below(end);
-    expected.push_back((p - before) * static_cast<double>(values.size()));
-    before = p;
-  }
-  expected.push_back((1 - before) * static_cast<double>(values.size()));
-  return chi_square_test(observed, expected, 10);
-}
 double poisson_share(double mean, int n) { return std::exp(n * std::log(mean) - mean - std::lgamma(n + 1.0)); }
 
 // P(charge < x) of Poisson electrons through a gain of gamma pulses (n electrons: shape n, scale G).
@@ -125,8 +101,8 @@ TEST(Register, IsTheChainOfItsStages) {
 // Many stages of a small probability: one electron becomes a geometric number, nearly an exponential one. So charges
 // are a Poisson-gamma mixture, and a threshold of 250 of 300 is passed by exp(-250/300) = 0.434598 of single electrons.
 TEST(Emccd, HasThePoissonGammaMixture) {
-  const auto d = detector_of(
-      "kind: emccd, em_gain: 1000, stages: 100000, gain_e_per_dn: 0.1, bias_dn: 0, seed: 7, bits: 16");
+  const auto d =
+      detector_of("kind: emccd, em_gain: 1000, stages: 100000, gain_e_per_dn: 0.1, bias_dn: 0, seed: 7, bits: 16");
   const double n = 0.6, G = 1000;
   std::vector<double> charges;
   for (const double dn : d.reader->read(even_light(300, 200, n)).dn) charges.push_back(0.1 * dn);
@@ -143,11 +119,6 @@ TEST(Emccd, HasThePoissonGammaMixture) {
   for (int i = 0; i < draws; ++i) one += stages.multiply(1, random) > 250, two += stages.multiply(2, random) > 250;
   EXPECT_NEAR(one / draws, 0.434598, kSure * std::sqrt(0.2457 / draws) + 0.001);
   EXPECT_NEAR(two / draws, 0.796763, kSure * std::sqrt(0.162 / draws) + 0.001);
-}
-
-double snr(const std::string& keys, double n) {
-  const DetectorNoise noise = detector_of(keys).reader->noise(1, 1e-10);
-  return n / std::sqrt(noise.constant + noise.linear * n);
 }
 
 // Signal over noise, S / sqrt(F^2 (S + dark + CIC) + (read / G)^2), by its formula and by what is read.
@@ -217,15 +188,16 @@ TEST(Qcmos, RoundsToWholeElectrons) {
     EXPECT_NEAR(std::erfc(0.5 / noise / std::sqrt(2.0)), wrong, 1e-5);
     // At 100 electrons none is cut at 0: P(a whole electron off) moves the variance, at 0 it is seen as counts.
     const std::vector<double> counts = d.reader->read(even_light(200, 200, 0)).counts;
-    const auto off = static_cast<double>(counts.size() - static_cast<size_t>(std::count(counts.begin(), counts.end(), 0)));
+    const auto off =
+        static_cast<double>(counts.size() - static_cast<size_t>(std::count(counts.begin(), counts.end(), 0)));
     EXPECT_NEAR(off / 40000, wrong / 2, kSure * std::sqrt(wrong / 2 / 40000) + 1e-3 * wrong) << noise;  // half below 0
   }
 }
 
 // Over pixels the noise is log-normal: median 1.3, mean 1.6 electrons, so 3 of 1000 pixels are above 7.6.
 TEST(Scmos, NoiseDiffersFromPixelToPixelAndIsAlwaysTheSameThere) {
-  const auto d = detector_of(
-      "kind: scmos, read_noise_e: {median: 1.3, mean: 1.6}, gain_e_per_dn: 0.05, bias_dn: 5000, seed: 3");
+  const auto d =
+      detector_of("kind: scmos, read_noise_e: {median: 1.3, mean: 1.6}, gain_e_per_dn: 0.05, bias_dn: 5000, seed: 3");
   constexpr uint32_t side = 60;
   constexpr int frames = 400;
   std::vector<RunningStats> pixels(side * side);
@@ -244,12 +216,14 @@ TEST(Scmos, NoiseDiffersFromPixelToPixelAndIsAlwaysTheSameThere) {
 
 TEST(Scmos, TelegraphStepsAndColumnNoise) {
   // All pixels have a trap: two independent samples of it differ with 2 d (1 - d); E a^2 = 2 A^2 over pixels.
-  const auto steps = detector_of(
-      "kind: scmos, gain_e_per_dn: 0.05, bias_dn: 9000, telegraph: {share: 1, amplitude_e: 5, duty: 0.25}");
+  const auto steps =
+      detector_of("kind: scmos, gain_e_per_dn: 0.05, bias_dn: 9000, telegraph: {share: 1, amplitude_e: 5, duty: 0.25}");
   expect_moments(steps.reader->read(even_light(300, 200, 0)).dn, 9000, 2 * 0.25 * 0.75 * 2 * 25 / (0.05 * 0.05), 17);
-  const auto columns = detector_of("kind: scmos, gain_e_per_dn: 0.01, bias_dn: 9000, column_noise_e: 2, row_noise_e: 1, "
-                                   "read_noise_e: 0.5");
-  const ArrayReading r = columns.reader->read(even_light(400, 400, 0)), next = columns.reader->read(even_light(400, 400, 0, 1));
+  const auto columns = detector_of(
+      "kind: scmos, gain_e_per_dn: 0.01, bias_dn: 9000, column_noise_e: 2, row_noise_e: 1, "
+      "read_noise_e: 0.5");
+  const ArrayReading r = columns.reader->read(even_light(400, 400, 0)),
+                     next = columns.reader->read(even_light(400, 400, 0, 1));
   std::vector<double> of_column(400, 0), of_row(400, 0), of_next(400, 0);
   for (size_t i = 0; i < r.dn.size(); ++i) {
     of_column[i % 400] += (r.dn[i] - 9000) * 0.01 / 400, of_row[i / 400] += (r.dn[i] - 9000) * 0.01 / 400;
@@ -262,150 +236,12 @@ TEST(Scmos, TelegraphStepsAndColumnNoise) {
   EXPECT_NEAR(together, 0, kSure * 4 / 20.0) << "columns are new in every read-out";
 }
 
-// 1-bit frames: counts are binomial; without a neighbour that triggers, as without cross-talk.
-TEST(Spad, FramesOfOneBit) {
-  const std::vector<double> counts = detector_of("kind: spad, frames: 50, seed: 2").reader->read(even_light(200, 200, 20)).counts;
-  const double P = -std::expm1(-0.4);
-  expect_moments(counts, 50 * P, 50 * P * (1 - P));
-  EXPECT_GT(std::fabs(stats_of(counts).mean() - 20), 1) << "negative control: without saturation";
-  const std::vector<double> one =
-      detector_of("kind: spad, frames: 50, crosstalk: 1.0e-12").reader->read(even_light(60, 60, 20)).counts;
-  expect_moments(one, 50 * P, 50 * P * (1 - P));
-  // At a low rate a click makes 4 c others, each 3 c more (the fourth neighbour has fired): 1 + 4 c + 12 c^2 to c^3.
-  const double c = 0.02, n = 0.5;
-  const RunningStats s = stats_of(
-      detector_of("kind: spad, frames: 500, crosstalk: 0.02").reader->read(even_light(100, 100, n)).counts);
-  EXPECT_NEAR(s.mean() / n, 1 + 4 * c + 12 * c * c, kSure * std::sqrt(1.3 / n / 10000) + 0.003);
-}
-
-// Mean and variance of counts behind a dead time, n / (1 + n tau) and n / (1 + n tau)^3 of long exposures (Knoll).
-TEST(Spad, DeadTime) {
-  const auto d = detector_of("kind: spad, dead_time_ns: 1.0e+6, dark_rate_hz: 100, seed: 6");
-  const double n = 600, blind = 1 + n * 1e-3;
-  expect_moments(d.reader->read(even_light(120, 120, 500)).counts, n / blind + 0.5 * (0.6 / blind) * (0.6 / blind),
-                 n / (blind * blind * blind));
-  const double many = 2e4;  // beyond 4096 counts they are normal
-  const auto fast = detector_of("kind: spad, dead_time_ns: 1.0e+5");
-  expect_moments(fast.reader->read(even_light(60, 60, many)).counts, many / (1 + many * 1e-4),
-                 many / std::pow(1 + many * 1e-4, 3) + 1.0 / 12);
-  const ArrayReading full = detector_of("kind: spad, dead_time_ns: 0, bits: 8").reader->read(even_light(4, 4, 1000));
-  EXPECT_EQ(full.counts[3], 255);
-  EXPECT_TRUE(full.clipped[3]);
-}
-
-TEST(Disk, KeepsTheLight) {
-  constexpr uint32_t n = 101;
-  std::vector<double> light(n * n, 0);
-  light[50 * n + 50] = 1;
-  for (const double radius : {0.3, 4.0, 20.5}) {
-    const std::vector<double> out = over_disk(light, n, {radius, radius}, 0.04);
-    double sum = 0, second = 0;
-    for (size_t i = 0; i < out.size(); ++i) {
-      const double x = static_cast<double>(i % n) - 50, y = static_cast<double>(i / n) - 50;
-      sum += out[i], second += out[i] * (x * x + y * y);
-    }
-    EXPECT_NEAR(sum, 1, 1e-12) << radius;
-    if (radius > 1) {
-      EXPECT_NEAR(second / (0.04 * radius * radius / 2), 1, 0.04) << radius;  // of an even disk R^2 / 2
-      EXPECT_NEAR(out[50 * n + 50 + 3], 0.04 / (kPi * radius * radius), 1e-12);
-      EXPECT_EQ(out[50 * n + 50 + static_cast<size_t>(radius) + 2], 0) << "sharp edge";
-    }
-  }
-}
-
-const std::string kTube = "kind: intensifier, gain_e: 200, gain_e_per_dn: 1, bias_dn: 0, read_noise_e: 0, ";
-
-// Camera electrons: mean n g, variance g^2 F^2 n + g n (Poisson of the camera), while spots stay in their pixels.
-TEST(Intensifier, PulseHeights) {
-  for (const double n : {0.2, 3.0, 100.0}) {
-    const auto d = detector_of(kTube + "pulse_excess: 1.6");
-    const std::vector<double> dn = d.reader->read(even_light(200, 200, n)).dn;
-    expect_moments(dn, 200 * n, 200 * 200 * 1.6 * n + 200 * n, 3 + 4 / n);
-    EXPECT_GT(std::fabs(stats_of(dn).variance() / (200 * 200 * n) - 1), 0.3) << "negative control: without pulse heights";
-  }
-  const double f2 = 1.6, n = 4;
-  EXPECT_NEAR(snr("kind: intensifier, gain_e: 1.0e+6, gain_e_per_dn: 1, pulse_excess: 1.6", n), std::sqrt(n / (f2 + 1e-6)), 1e-9);
-}
-
-// Spots and halo move light about; none is lost but at the edges.
-TEST(Intensifier, SpotsAndHaloKeepTheLight) {
-  const auto d = detector_of(kTube + "halo: {share: 0.03, radius_um: 150}, phosphor: {blur_um: 12}");
-  ArrayLight light = even_light(101, 101, 0);
-  light.electrons[50 * 101 + 50] = 50000;
-  const auto dim = detector_of("kind: intensifier, gain_e: 0.5, gain_e_per_dn: 0.5, bias_dn: 0, halo: {share: 0.03, "
-                               "radius_um: 150}, phosphor: {blur_um: 12}, pulse_excess: 1");
-  const ArrayReading r = dim.reader->read(light);
-  double sum = 0, far = 0;
-  for (size_t i = 0; i < r.dn.size(); ++i) {
-    const double x = static_cast<double>(i % 101) - 50, y = static_cast<double>(i / 101) - 50;
-    sum += 0.5 * r.dn[i];
-    if (x * x + y * y > 64) far += 0.5 * r.dn[i];
-  }
-  EXPECT_NEAR(sum, 25000, kSure * std::sqrt(25000 + 0.25 * 50000));
-  EXPECT_NEAR(far / 25000, 0.03 * (1 - 64 / 225.0), 0.003);
-  // Single events: twenty photoelectrons are at most twenty spots, and few pixels are lit.
-  ArrayLight few = even_light(64, 64, 20.0 / 4096);
-  const ArrayReading events = d.reader->read(few);
-  double lit = 0;
-  for (const double dn : events.dn) lit += dn > 4;
-  EXPECT_GT(lit, 20);
-  EXPECT_LT(lit, 40 * 25);
-}
-
-// 2e-7 lx of a lamp of 2856 K on a photocathode of 1000 uA/lm and 10 um pixels: E A S / e.
-TEST(Intensifier, BackgroundIllumination) {
-  const Curve qe({0.3, 0.9, 0.901}, {0.3, 0.3, 0}, Outside::zero);
-  const auto d = detector_of(
-      "kind: intensifier, gain_e: 10, gain_e_per_dn: 1, pulse_excess: 1, background_lx: 1.0e-3, quantum_efficiency: "
-      "{wavelength_um: [0.3, 0.9, 0.901], value: [0.3, 0.3, 0]}");
-  // Sum of its own over the same spectrum, in steps of 1 nm.
-  double electrons = 0;
-  std::vector<double> um, lamp;
-  for (int i = 0; i <= 2700; ++i) {
-    um.push_back(0.3 + 0.001 * i);
-    const double x = 14387.768775 / (um.back() * 2856);
-    lamp.push_back(std::pow(um.back(), -5) / std::expm1(x));
-    if (um.back() <= 0.9) electrons += 0.3 * lamp.back() * um.back() * 1e-3;
-  }
-  const double per_lumen = electrons / photopic(Curve(um, lamp, Outside::zero)) * 1e-6 / (6.62607015e-34 * 299792458.0);
-  EXPECT_NEAR(d.reader->noise(1, 1e-10).constant / (1e-3 * 1e-10 * per_lumen), 1, 0.02);
-  const double n = 1e-3 * 1e-10 * per_lumen;
-  const double read = stats_of(d.reader->read(even_light(100, 100, 0)).dn).mean() - 100;
-  EXPECT_NEAR(read / (10 * n), 1, kSure / std::sqrt(n * 1e4) + 0.02);
-  std::printf("photocathode of 30 %%, 0.3 to 0.9 um: %.0f uA/lm\n", n / 1e-13 * 1.602176634e-13);
-}
-
-// Light left over: of frames T apart with exposure t, sum over all frames of the share is 1 - what falls between them.
-TEST(Intensifier, PhosphorDecay) {
-  const auto d = detector_of(kTube + "pulse_excess: 1, phosphor: {decay_ms: 500}");
-  ArrayLight light = even_light(100, 100, 50);
-  light.exposure = 1, light.period = 1, light.before = 0;
-  const double own = 1 - 0.5 * -std::expm1(-2.0), first = stats_of(d.reader->read(light).dn).mean();
-  EXPECT_NEAR(first / (200 * 50 * own), 1, 0.01);
-  light.before = 12, light.read_out = 12;  // frames without a gap: in the end all light is seen
-  EXPECT_NEAR(stats_of(d.reader->read(light).dn).mean() / (200 * 50), 1, 0.01);
-  // What is left over from a frame is of that frame's own photoelectrons.
-  light.before = 1, light.read_out = 1;
-  const std::vector<double> next = d.reader->read(light).dn;
-  light.before = 0, light.read_out = 0;
-  const std::vector<double> before = d.reader->read(light).dn;
-  const RunningStats a = stats_of(before), b = stats_of(next);
-  double together = 0;
-  for (size_t i = 0; i < before.size(); ++i) together += (before[i] - a.mean()) * (next[i] - b.mean()) / 1e4;
-  EXPECT_GT(together / std::sqrt(a.variance() * b.variance()), 0.2);
-}
-
-TEST(Intensifier, AutoGatingHoldsTheMean) {
-  const auto d = detector_of(kTube + "auto_gate_e_s: 10");
-  EXPECT_NEAR(stats_of(d.reader->read(even_light(100, 100, 80)).dn).mean(), 2000, 30);
-  EXPECT_NEAR(stats_of(d.reader->read(even_light(100, 100, 5)).dn).mean(), 1000, 20);
-}
-
 TEST(Ingaas, DarkCurrentDoubles) {
   const auto at = [](double kelvin) {
-    const auto d = detector_of(strf("kind: ingaas, gain_e_per_dn: 1, dark_current_e_s: 1000, dark_reference_k: 290, "
-                                    "dark_doubling_k: 7, temperature_k: %g",
-                                    kelvin));
+    const auto d =
+        detector_of(strf("kind: ingaas, gain_e_per_dn: 1, dark_current_e_s: 1000, dark_reference_k: 290, "
+                         "dark_doubling_k: 7, temperature_k: %g",
+                         kelvin));
     EXPECT_NEAR(d.spec.dark_current / (1000 * std::exp2((kelvin - 290) / 7)), 1, 1e-12);
     return d.reader->read(even_light(100, 100, 0)).dn;
   };
@@ -422,7 +258,8 @@ TEST(Detectors, TheSameSeedTheSameBytesAndAnotherOnesOthers) {
                              : row.name == "intensifier"     ? ", gain_e: 100, gain_e_per_dn: 1, phosphor: {blur_um: 9}"
                                                              : ", gain_e_per_dn: 1";
     const auto read = [&](int seed, uint64_t read_out) {
-      const ArrayReading r = detector_of(keys + std::to_string(seed) + rest).reader->read(even_light(20, 20, 2, read_out));
+      const ArrayReading r =
+          detector_of(keys + std::to_string(seed) + rest).reader->read(even_light(20, 20, 2, read_out));
       return r.dn.empty() ? r.counts : r.dn;
     };
     EXPECT_EQ(read(1, 0), read(1, 0)) << row.name;
@@ -435,8 +272,9 @@ TEST(Detectors, TheSameSeedTheSameBytesAndAnotherOnesOthers) {
 TEST(Detectors, HoldNineDecadesInOneFrame) {
   ArrayLight light = even_light(64, 64, 0.5);
   light.electrons[2000] = 5e8;
-  const auto d = detector_of("kind: intensifier, gain_e: 1, gain_e_per_dn: 1.0e+4, bias_dn: 0, halo: {share: 0.02, "
-                             "radius_um: 100}, pulse_excess: 1");
+  const auto d = detector_of(
+      "kind: intensifier, gain_e: 1, gain_e_per_dn: 1.0e+4, bias_dn: 0, halo: {share: 0.02, "
+      "radius_um: 100}, pulse_excess: 1");
   const ArrayReading r = d.reader->read(light);
   EXPECT_NEAR(r.dn[2000] / (0.98 * 5e4), 1, 0.001);
   EXPECT_NEAR(r.dn[2003], 0.02 * 5e4 / (kPi * 100), 1.5);
