@@ -285,7 +285,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p,
                        ? environment_.earth->meet(path.origin, path.direction, std::numeric_limits<double>::infinity())
                        : std::nullopt;
   if (!met) {
-    escape(p);
+    bool in_field = false;  // beams have come to the place in the air, which the path has left, as everywhere
+    if constexpr (Space::kGoesBack) in_field = flights_[slot].difference;
+    escape(p, in_field);
     return false;
   }
   Hit& hit = hits_[slot];
@@ -323,13 +325,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::receive(uint32_t p) {
   }
 }
 
-// What a path meets outside the scene.
+// What a path meets outside the scene. in_field: but for beams, which the field of the air has.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p, bool in_field) {
   const Path& path = paths_[p];
   records_[p].end = PathEnd::escaped;
   records_[p].escape = path.direction;
   for (const Asked& light : outside_) {
+    if (in_field && light.beam) continue;
     if (is_refracted(light.nature) && is_claimed(path, {ClaimedLight::Kind::small, light.index})) continue;
     const auto met = light.light->met_outside(path.direction, path.time);
     if (!met) continue;
