@@ -13,6 +13,7 @@
 #include "formats/sim_text/air_tables.h"
 #include "formats/sqt/sqt.h"
 #include "optics/phase_function.h"
+#include "spectral/lamp_spectra.h"
 
 namespace suite {
 
@@ -36,6 +37,10 @@ Curve read_curve_value(const Params& p) {
   if (p.kind() == Params::Kind::list || (p.kind() == Params::Kind::map && p.has("join")))
     return read_joined(p, read_curve_value);
   if (p.kind() == Params::Kind::map) {
+    if (const auto lamp = p.find("lamp")) {
+      const std::vector<std::string> names = lamp_names();
+      return lamp_spectrum(names[lamp->as_choice(names)]).scaled(p.number_in("scale", 0, 1e30, "W", 1));
+    }
     if (const auto x = p.find("wavelength_um"))
       return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
     CurveOptions options = with_warnings();

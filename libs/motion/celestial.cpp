@@ -31,6 +31,7 @@ CelestialSphere::CelestialSphere(const SceneFrame& frame, JulianDate tt, JulianD
   eraC2t06a(tt.day, tt.fraction, ut1.day, ut1.fraction, 0, 0, to_earth);
   const auto column = [&](int j) { return frame.enu_direction({to_earth[0][j], to_earth[1][j], to_earth[2][j]}); };
   axes_ = {column(0), column(1), column(2)};
+  pole_ = normalized(frame.enu_direction({0, 0, 1}));
   eraEcm06(tt.day, tt.fraction, to_ecliptic);
   const auto row = [&](int i) { return axes_.to_world({to_ecliptic[i][0], to_ecliptic[i][1], to_ecliptic[i][2]}); };
   ecliptic_ = {row(0), row(1), row(2)};

@@ -38,6 +38,8 @@ class CelestialSphere {
   // Geometric turns between celestial axes (GCRS: x to the equinox of J2000, z to its pole) and scene ENU.
   Dir to_scene(Dir celestial) const { return axes_.to_world(celestial); }
   Dir to_celestial(Dir scene) const { return axes_.to_local(scene); }
+  // The Earth's axis of the day, towards the north.
+  Dir pole() const { return pole_; }
   // Axes of the ecliptic and mean equinox of date, in scene ENU: z to the ecliptic's pole.
   const Frame& ecliptic() const { return ecliptic_; }
   // Ecliptic longitude of the Sun (rad), geometric but for light time, and its distance, au.
@@ -55,6 +57,7 @@ class CelestialSphere {
   struct Observer;
   std::shared_ptr<const Observer> observer_;
   Frame axes_, ecliptic_;  // celestial and ecliptic axes in scene ENU
+  Dir pole_{0, 0, 1};
   double sun_longitude_ = 0, sun_distance_ = 1;
 };
 

@@ -108,6 +108,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   record.scattered_first = record.met = false;
   record.received = ray.receiver != SensorRay::Receiver::none;
   path.received = record.received;
+  path.points_apart = ray.points_apart;
   space_.start(p, path);
   if constexpr (Space::kGoesBack) passed_[p].sum = 0, passed_[p].again = false;
   if (!record.received) return active_.push_back(p);
@@ -340,7 +341,10 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p, boo
     if (!met->spectrum) {  // its shape changes with direction
       memory = dense(p);
       std::fill(memory.begin(), memory.end(), 0.0f);
-      light.light->add(path.direction, path.time, 1, memory);
+      if (path.points_apart && path.order() == 0)
+        light.light->add_without_points(path.direction, path.time, 1, memory);
+      else
+        light.light->add(path.direction, path.time, 1, memory);
     }
     Contribution& c = contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);

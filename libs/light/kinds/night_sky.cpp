@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "light/environment.h"
+#include "light/far_points.h"
 #include "light/kinds/body.h"
 #include "light/kinds/rows.h"
 #include "light/kinds/sky.h"
@@ -16,8 +18,8 @@ namespace {
 // Baked for a state. Drawn from cells of the upper hemisphere by what they send in the mean of all bins.
 class NightSky final : public Light {
  public:
-  NightSky(std::shared_ptr<const NightMap> map, const SpectralState& state)
-      : map_(std::move(map)), bins_(state.size()) {
+  NightSky(std::shared_ptr<const NightMap> map, std::shared_ptr<const FarPoints> points, const SpectralState& state)
+      : map_(std::move(map)), points_(std::move(points)), bins_(state.size()) {
     for (const NightMap::Component& c : map_->components())
       for (const Bin& bin : state.bins)
         spectra_.push_back(static_cast<float>(c.spectrum.mean(bin.low_um, bin.high_um)));
@@ -40,16 +42,12 @@ class NightSky final : public Light {
     return LightMet{1, nullptr, nature_.drawn ? sky_->density(d) : 0};
   }
   void add(Dir d, double, float scale, std::span<float> radiance) const override {
-    std::array<double, kMost> memory;
-    const std::span<double> w(memory.data(), map_->components().size());
-    map_->weights(d, w);
-    for (size_t c = 0; c < w.size(); ++c) {
-      if (w[c] == 0) continue;
-      const float by = scale * static_cast<float>(w[c]);
-      const float* spectrum = &spectra_[c * bins_];
-      for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += by * spectrum[i];
-    }
+    add(d, scale, radiance, map_->components().size());
   }
+  void add_without_points(Dir d, double, float scale, std::span<float> radiance) const override {
+    add(d, scale, radiance, points_ ? map_->first_star() : map_->components().size());
+  }
+  const FarPoints* points() const override { return points_.get(); }
   size_t members() const override { return 0; }
   std::optional<LightSample> sample_member(size_t, double, const LightReceiver&, const std::array<double, 4>&,
                                            double) const override {
@@ -58,6 +56,19 @@ class NightSky final : public Light {
 
  private:
   static constexpr size_t kMost = 32;  // components
+
+  // Of the first components.
+  void add(Dir d, float scale, std::span<float> radiance, size_t count) const {
+    std::array<double, kMost> memory;
+    const std::span<double> w(memory.data(), map_->components().size());
+    map_->weights(d, w);
+    for (size_t c = 0; c < count; ++c) {
+      if (w[c] == 0) continue;
+      const float by = scale * static_cast<float>(w[c]);
+      const float* spectrum = &spectra_[c * bins_];
+      for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += by * spectrum[i];
+    }
+  }
 
   SkySpec density() const {
     const size_t n = map_->components().size();
@@ -96,6 +107,7 @@ class NightSky final : public Light {
   }
 
   std::shared_ptr<const NightMap> map_;
+  std::shared_ptr<const FarPoints> points_;  // null = they are spread, in views as well
   size_t bins_;
   std::vector<float> spectra_;  // [component][bin]
   std::optional<Sky> sky_;
@@ -125,35 +137,80 @@ LightSpectra spectra_of(const NightMap& map) {
 
 class NightSkyLight final : public LightSpec {
  public:
-  explicit NightSkyLight(NightSkyLightSpec spec, std::shared_ptr<const NightMap> map = nullptr)
-      : spec_(std::move(spec)), map_(std::move(map)) {}
+  // A moment of it.
+  struct Now {
+    SceneFrame frame;
+    JulianDate tt, ut1;
+    double seconds;
+    std::shared_ptr<const NightMap> map;
+    std::shared_ptr<const FarPoints> points = {};  // not before it has settled
+    bool settled = false;
+  };
+  explicit NightSkyLight(NightSkyLightSpec spec, std::optional<Now> now = std::nullopt)
+      : spec_(std::move(spec)), now_(std::move(now)) {}
   std::string key() const override { return "night_sky"; }
-  const SourceTime* date() const override { return map_ ? nullptr : &spec_.time; }
+  const SourceTime* date() const override { return now_ ? nullptr : &spec_.time; }
 
   LightSpecPtr resolved(const LightMoment& at) const override {
-    if (map_) return nullptr;
+    if (now_) return nullptr;
     const SceneFrame frame =
         spec_.place ? SceneFrame(*spec_.place) : frame_of(at.scene, spec_.time.where, "a night sky");
     const Instant epoch = instant_of(spec_.time), instant = epoch + at.seconds;
-    const CelestialSphere sphere(frame, julian_tt(instant), julian_ut1(instant, dut1_at(instant, epoch, at.dut1)));
-    auto map = std::make_shared<const NightMap>(spec_, sphere);
-    at.said.push_back(sentence_of(*map, instant));
-    return std::make_shared<const NightSkyLight>(spec_, std::move(map));
+    Now now{frame, julian_tt(instant), julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds, nullptr};
+    now.map = std::make_shared<const NightMap>(spec_, CelestialSphere(frame, now.tt, now.ut1));
+    at.said.push_back(sentence_of(*now.map, instant));
+    return std::make_shared<const NightSkyLight>(spec_, std::move(now));
+  }
+
+  // Air lifts the stars; where paths are scattered in it, nobody knows what it leaves of one.
+  void settle(SourceSpecs& all, size_t own, std::vector<std::string>& said) const override {
+    const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
+    if (now_->settled || !spec_.catalogue || !spec_.in_view || !(scale > 0)) return;
+    Now now = *now_;
+    now.settled = true;
+    if (all.air && all.air->scattering == AirScattering::traced)
+      said.push_back(
+          "night sky: under `scattering: traced` its stars are spread over cells of 3 degrees, in views as well");
+    else
+      now.points = std::make_shared<const FarPoints>(
+          points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all)), scale));
+    all.lights[own] = std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
 
   std::shared_ptr<const Light> bake(const Tracer&, const SpectralState& state) const override {
-    SUITE_CHECK(map_);
-    return std::make_shared<const NightSky>(map_, state);
+    SUITE_CHECK(now_);
+    return std::make_shared<const NightSky>(now_->map, now_->points, state);
   }
   bool in_scene() const override { return false; }
   bool shines(double low_um, double high_um) const override { return high_um > kNightLow && low_um < kNightHigh; }
   void add_spectra(std::vector<LightSpectra>& to) const override {
-    SUITE_CHECK(map_);
-    to.push_back(spectra_of(*map_));
+    SUITE_CHECK(now_);
+    to.push_back(spectra_of(*now_->map));
   }
   std::vector<std::string> hardly_met(double) const override { return {}; }
 
  private:
+  static std::optional<SurfaceAir> air_of(const SourceSpecs& all) {
+    if (!all.has_air()) return std::nullopt;
+    SurfaceAir air;
+    if (all.air) {
+      const AirLevel level = all.air->profile.at(all.air->height_of_scene());
+      air.pressure = level.pressure, air.temperature = level.temperature;
+    } else if (all.atmosphere) {
+      air.pressure = all.atmosphere->pressure * std::exp(-all.atmosphere->scene_height / 8000);
+    }
+    return air;
+  }
+  FarPoints points_of(const CelestialSphere& sphere, double scale) const {
+    FarPoints all;
+    all.pole = sphere.pole();
+    all.seconds = now_->seconds;
+    all.scale = scale;
+    for (const CatalogueStar& s : *spec_.catalogue)
+      if (s.v <= spec_.faintest)
+        all.points.push_back({s.number, s.v, star_temperature(s.colour), sphere.seen(s.place)});
+    return all;
+  }
   static std::string sentence_of(const NightMap& map, Instant instant) {
     const NightIlluminance lx = illuminance_of(map);
     const auto sum = [](const auto& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); };
@@ -167,14 +224,12 @@ class NightSkyLight final : public LightSpec {
   }
 
   const NightSkyLightSpec spec_;
-  const std::shared_ptr<const NightMap> map_;  // null = not resolved
+  const std::optional<Now> now_;  // none = not resolved
 };
-
-constexpr size_t kFirstPart = 0;
 
 void read_parts(const Params& p, NightSkySpec& sky) {
   std::vector<std::string> names;
-  for (size_t i = kFirstPart; i < kNightParts; ++i) names.push_back(name_of(static_cast<NightPart>(i)));
+  for (size_t i = 0; i < kNightParts; ++i) names.push_back(name_of(static_cast<NightPart>(i)));
   if (const auto parts = p.find("parts")) {
     sky.scale.fill(0);
     for (const Params& one : parts->items()) {
@@ -217,6 +272,7 @@ LightSpecPtr read_night_sky(const Params& p, const LightContext& context) {
   if (!catalogue || catalogue->as_choice({"builtin", "none"}) == 0)
     sky.catalogue = {std::shared_ptr<void>(), &bright_star_catalogue()};
   sky.faintest = p.number_in("stars_to_mag", -2, 20, "mag", sky.faintest);
+  if (const auto resolve = p.find("resolve_stars")) sky.in_view = resolve->as_choice({"in_view", "none"}) == 0;
   sky.solar_flux = p.number_in("solar_flux_sfu", 50, 400, "sfu", sky.solar_flux);
   return make_light(std::move(sky));
 }

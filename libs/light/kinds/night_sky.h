@@ -8,6 +8,7 @@ namespace suite {
 struct NightSkyLightSpec : NightSkySpec {
   SourceTime time;                     // second 0
   std::optional<Geodetic> place = {};  // else the scene's origin
+  bool in_view = true;                 // sensors that can put stars on their focal plane do (far_points.h)
 };
 LightSpecPtr make_light(NightSkyLightSpec spec);
 

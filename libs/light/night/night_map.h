@@ -38,6 +38,8 @@ class NightMap {
  public:
   NightMap(const NightSkySpec& spec, const CelestialSphere& sphere);
 
+  // Of the catalogue, when cells hold its stars; as many as components() where there are none.
+  size_t first_star() const { return first_.stars; }
   // One thing that shines with one spectrum.
   struct Component {
     NightPart part;
