@@ -13,6 +13,7 @@
 #include "formats/sim_text/air_tables.h"
 #include "formats/sqt/sqt.h"
 #include "optics/phase_function.h"
+#include "spectral/lamp_spectra.h"
 
 namespace suite {
 
@@ -36,6 +37,10 @@ Curve read_curve_value(const Params& p) {
   if (p.kind() == Params::Kind::list || (p.kind() == Params::Kind::map && p.has("join")))
     return read_joined(p, read_curve_value);
   if (p.kind() == Params::Kind::map) {
+    if (const auto lamp = p.find("lamp")) {
+      const std::vector<std::string> names = lamp_names();
+      return lamp_spectrum(names[lamp->as_choice(names)]).scaled(p.number_in("scale", 0, 1e30, "W", 1));
+    }
     if (const auto x = p.find("wavelength_um"))
       return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
     CurveOptions options = with_warnings();
@@ -90,11 +95,16 @@ ModelSpec read_phase(const Params& p) {
 }
 
 // The date of second 0, which may stand with the lights that are being read.
-std::optional<Clock> clock_of(const Params& root) {
+std::optional<Params> date_of(const Params& root) {
   auto date = root.find("epoch");
   for (const char* body : {"sun", "moon"})
     if (const auto light = date ? std::nullopt : root.find(body))
       if (const auto direction = light->find("direction")) date = direction->find("time_utc");
+  if (const auto sky = date ? std::nullopt : root.find("night_sky")) date = sky->find("time_utc");
+  return date;
+}
+
+std::optional<Clock> clock_of(const std::optional<Params>& date) {
   if (!date) return std::nullopt;
   try {
     return Clock(parse_iso8601(date->as_text()));
@@ -192,12 +202,14 @@ void check_coverage(const AskedCurve& curve, const Sensor& sensor, const Where& 
 SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
   SourceSpecs s;
   MotionContext motion;
-  motion.clock = clock_of(root);
+  const std::optional<Params> date = date_of(root);
+  motion.clock = clock_of(date);
   LightContext context{read_curve_value,
                        read_image,
                        read_intensity,
                        read_candela,
                        [&](const Params& p) { return read_lamp_schedule(p, motion); },
+                       date ? std::optional(SourceTime{date->as_text(), date->where()}) : std::nullopt,
                        &asked};
   for (const LightRow* key : light_keys()) {
     const auto value = root.find(key->key());

@@ -20,6 +20,8 @@
 
 namespace suite {
 
+struct FarPoints;  // far_points.h
+
 // What a light is. Heuristics and special cases follow from this alone, never from its place in a list.
 struct LightNature {
   bool far = false;    // stands at infinity: rays that leave the scene meet it
@@ -105,6 +107,12 @@ class Light {
   // Adds scale times the radiance from a direction at the time of a ray (s): far lights that give no spectrum above.
   // Bug for others.
   virtual void add(Dir direction, double time, float scale, std::span<float> radiance) const;
+  // What a sensor sees of it straight ahead if its far points come by other means (far_points.h): less than add() gives.
+  virtual void add_without_points(Dir direction, double time, float scale, std::span<float> radiance) const {
+    add(direction, time, scale, radiance);
+  }
+  // Those points; null = none. They live as long as the light.
+  virtual const FarPoints* points() const { return nullptr; }
   // The beam that the air scatters (Sun, Moon). Its spectrum lives as long as the light.
   virtual std::optional<Beam> beam() const { return std::nullopt; }
 

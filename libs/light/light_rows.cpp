@@ -7,9 +7,10 @@
 namespace suite {
 
 Registry<LightRow>& light_rows() {
-  static Registry<LightRow> table("light", "",
-                                  {sun_row(), moon_row(), sky_table_row(), sky_clear_row(), sky_image_row(),
-                                   sky_thermal_row(), lamp_point_row(), lamp_spot_row(), lamp_surface_row()});
+  static Registry<LightRow> table(
+      "light", "",
+      {sun_row(), moon_row(), sky_table_row(), sky_clear_row(), sky_image_row(), sky_thermal_row(), night_sky_row(),
+       lamp_point_row(), lamp_spot_row(), lamp_surface_row()});
   return table;
 }
 

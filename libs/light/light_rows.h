@@ -38,6 +38,7 @@ struct LightContext {
   std::function<IntensityTable(const Params& path)> candela;
   // When a lamp is how bright.
   std::function<std::shared_ptr<const LampSchedule>(const Params&)> schedule;
+  std::optional<SourceTime> date = {};       // of second 0, where the text says it
   std::vector<AskedCurve>* asked = nullptr;  // receives the curves that were read
   size_t number = 1;                         // of the entry in its list
 

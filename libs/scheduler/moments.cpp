@@ -6,6 +6,7 @@
 #include <map>
 
 #include "motion/time.h"
+#include "scheduler/sensor_diagnostics.h"
 
 namespace suite {
 
@@ -62,6 +63,21 @@ void check_sun_up(const SourceSpecs& written, const std::string& what, const Sce
   }
 }
 
+// The night sky is that of the ground.
+std::string above_airglow(const SourceSpecs& written, Sensors sensors) {
+  constexpr double kLowestLayer = 87e3;  // m
+  const auto is_night = [](const LightSpecPtr& light) { return light->key() == "night_sky"; };
+  if (std::none_of(written.lights.begin(), written.lights.end(), is_night)) return {};
+  for (const auto& sensor : sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures)
+        if (middle_ray(*sensor, c, c.problems() / 2).ray.origin.z > kLowestLayer)
+          return "night sky: sensor '" + sensor->name() +
+                 "' stands above the layers of airglow (87 km), which it sees as from the ground: no layer below it, no "
+                 "limb";
+  return {};
+}
+
 constexpr double kUsualRadius = 0.00465;  // rad, of bodies that are taken as collimated
 
 // How far a body goes during a capture, and what that does to the light on level ground.
@@ -112,6 +128,7 @@ std::vector<std::string> describe_sources(const SourceSpecs& written, const Scen
       if (const std::string what = light->needs_sun_up(); !what.empty()) check_sun_up(written, what, scene, moments);
   SourceSpecs first = written;
   std::vector<std::string> said = resolve_sources(first, scene, moments.empty() ? 0 : moments.begin()->first);
+  if (const std::string above = above_airglow(written, sensors); !above.empty()) said.push_back(above);
   if (moments.size() < 2) return said;
   for (std::string& s : said) s = "first capture: " + s;
   SourceSpecs last = written;

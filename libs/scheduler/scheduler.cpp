@@ -13,6 +13,7 @@
 #include "scheduler/items.h"
 #include "scheduler/judge.h"
 #include "scheduler/kits.h"
+#include "scheduler/points_in_view.h"
 #include "scheduler/planner.h"
 #include "scheduler/primed.h"
 #include "scheduler/result.h"
@@ -323,6 +324,7 @@ class Job {
     log.statistics = c.planner->statistics();
     CaptureResult result = with_blind_flagged(sensor, capture, c.result->finish());
     report_.shortfalls[item.sensor].shortfall.merge(c.result->shortfall());
+    add_points(*c.primed, sensor_of(item), capture, result);
     result.task = item.task;
     result.capture = item.capture;
     judge_.add(item.sensor, c.work, c.primed->kit.bands->reference, result, report_, log);

@@ -104,6 +104,8 @@ struct SensorRay {
   // ray.direction; the sample is irradiance / pi. sphere: flux through a small sphere / (4 pi). The core chooses where
   // to look and asks Sun, Moon, sky and lamps as it does at surfaces; the receiver counts as a node of the path.
   enum class Receiver : uint8_t { none, plane, sphere } receiver = Receiver::none;
+  // Far points (stars) straight ahead are put on the focal plane by other means (point_images.h).
+  bool points_apart = false;
 };
 
 // Results of one capture, all problems, row-major. Spectral quantities per band; means and standard errors.

@@ -21,9 +21,14 @@ class AirPlaces {
         at_(c.width),
         scratch_(c.optics.state().size()) {
     for (const auto& light : c.environment.lights)
-      if (const auto beam = light->beam()) beams_.push_back(beam->direction);
+      if (const auto beam = light->beam())
+        beams_.push_back(beam->direction);
+      else if (light->nature().far && !light->nature().delta)
+        lit_from_outside_ = true;
   }
 
+  // Whether something shines outside that the even field does not know: no beam.
+  bool lit_from_outside() const { return lit_from_outside_; }
   void start(uint32_t p) { at_[p].here = false; }
   // Whether path p stands at one; its next flight leaves it.
   bool here(uint32_t p) const { return at_[p].here; }
@@ -96,6 +101,7 @@ class AirPlaces {
   const AirVertices& vertices_;
   size_t knots_;
   std::vector<Dir> beams_;  // towards their sources
+  bool lit_from_outside_ = false;
   std::vector<At> at_;
   std::vector<float> scratch_;
 };

@@ -128,7 +128,7 @@ class PathKernel final : public PathTracing {
   bool meet_earth(uint32_t p, uint32_t slot);
   void receive(uint32_t p);
   SUITE_INLINE void enter_node(uint32_t p, const Hit& hit, bool first);
-  SUITE_INLINE void escape(uint32_t p);
+  SUITE_INLINE void escape(uint32_t p, bool in_field);
   void meet_glow(uint32_t p, const Hit& hit);
   void emit(uint32_t p);
   bool is_first_surface(uint32_t p) const;

@@ -108,6 +108,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   record.scattered_first = record.met = false;
   record.received = ray.receiver != SensorRay::Receiver::none;
   path.received = record.received;
+  path.points_apart = ray.points_apart;
   space_.start(p, path);
   if constexpr (Space::kGoesBack) passed_[p].sum = 0, passed_[p].again = false;
   if (!record.received) return active_.push_back(p);
@@ -285,7 +286,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p,
                        ? environment_.earth->meet(path.origin, path.direction, std::numeric_limits<double>::infinity())
                        : std::nullopt;
   if (!met) {
-    escape(p);
+    bool in_field = false;  // beams have come to the place in the air, which the path has left, as everywhere
+    if constexpr (Space::kGoesBack) in_field = flights_[slot].difference;
+    escape(p, in_field);
     return false;
   }
   Hit& hit = hits_[slot];
@@ -323,13 +326,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::receive(uint32_t p) {
   }
 }
 
-// What a path meets outside the scene.
+// What a path meets outside the scene. in_field: but for beams, which the field of the air has.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p, bool in_field) {
   const Path& path = paths_[p];
   records_[p].end = PathEnd::escaped;
   records_[p].escape = path.direction;
   for (const Asked& light : outside_) {
+    if (in_field && light.beam) continue;
     if (is_refracted(light.nature) && is_claimed(path, {ClaimedLight::Kind::small, light.index})) continue;
     const auto met = light.light->met_outside(path.direction, path.time);
     if (!met) continue;
@@ -337,7 +341,10 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
     if (!met->spectrum) {  // its shape changes with direction
       memory = dense(p);
       std::fill(memory.begin(), memory.end(), 0.0f);
-      light.light->add(path.direction, path.time, 1, memory);
+      if (path.points_apart && path.order() == 0)
+        light.light->add_without_points(path.direction, path.time, 1, memory);
+      else
+        light.light->add(path.direction, path.time, 1, memory);
     }
     Contribution& c = contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);

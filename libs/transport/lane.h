@@ -50,6 +50,7 @@ struct Lane {
   uint32_t flights = 0;      // through media so far
   uint8_t events = 0;        // EventKind so far
   uint8_t received = 0;      // 1: starts at a receiver
+  bool points_apart = false; // SensorRay::points_apart
   WaterSeen water = WaterSeen::nothing;
   uint32_t order() const { return surfaces + scatterings; }
 };

@@ -30,6 +30,9 @@ class LitAirSpace : public AirSpace {
     const bool left = places_.leave(p);
     if (!left) {
       flight = AirSpace::fly(p, lane, record, hit, ray, length, ends, through, emitted);
+    } else if (length == std::numeric_limits<double>::infinity() && ends && places_.lit_from_outside()) {
+      air_.transmittance(lane.origin, lane.direction, length, through);  // to a light that the field does not know
+      flight.emitted = nullptr;
     } else if (length == std::numeric_limits<double>::infinity()) {  // the even ground or the sky, as everywhere
       record.end = PathEnd::escaped;
       record.escape = lane.direction;

@@ -83,7 +83,21 @@ Curve moon_irradiance(const MoonGeometry& g, const Curve& sun) {
   return Curve(sun.wavelength_um(), std::move(y), sun.outside());
 }
 
+Curve earthshine_irradiance(const MoonGeometry& g, const Curve& sun) {
+  constexpr double kFullEarth = 8 / 1.3e5;
+  const double phase = kPi - g.phase, share = (std::sin(phase) + (kPi - phase) * std::cos(phase)) / kPi;
+  MoonGeometry full = g;
+  full.phase = full.sun_longitude = 1.5 * kDegree;
+  return moon_irradiance(full, sun).scaled(kFullEarth * share);
+}
+
 namespace {
+
+Curve sum_of(const Curve& a, const Curve& b) {  // over the same wavelengths
+  std::vector<double> y = a.value();
+  for (size_t i = 0; i < y.size(); ++i) y[i] += b.value()[i];
+  return a.is_constant() ? Curve::constant(y[0]) : Curve(a.wavelength_um(), std::move(y), a.outside());
+}
 
 class MoonLight final : public BodySpec {
  public:
@@ -123,6 +137,11 @@ LightSpecPtr read_moon(const Params& p, const LightContext& context) {
     moon.geometry.phase = phase->as_number_in(0, 180, "degrees") * kDegree;
     moon.geometry.sun_longitude = moon.geometry.phase;
   }
+  if (const auto earthshine = p.find("earthshine")) {
+    moon.earthshine = earthshine->as_bool();
+    if (moon.earthshine && !moon.by_phase)
+      throw earthshine->error("earthshine belongs to a moon whose light follows from its phase", "drop one of the two");
+  }
   if (moon.by_phase)
     context.builtin(p, "the builtin spectrum of the sun, whose light the moon sends on,", "irradiance",
                     solar_irradiance());
@@ -156,6 +175,8 @@ MoonSpec resolved(MoonSpec moon, const LightMoment& at) {
   }
   if (moon.by_phase) {
     moon.disk.irradiance = moon_irradiance(g, solar_irradiance());
+    if (moon.earthshine)
+      moon.disk.irradiance = sum_of(moon.disk.irradiance, earthshine_irradiance(g, solar_irradiance()));
     moon.by_phase = false;
   }
   return moon;

@@ -10,6 +10,7 @@ LightRow sky_table_row();
 LightRow sky_clear_row();
 LightRow sky_image_row();
 LightRow sky_thermal_row();
+LightRow night_sky_row();
 LightRow lamp_point_row();
 LightRow lamp_spot_row();
 LightRow lamp_surface_row();

@@ -6,12 +6,13 @@
 
 #include "math/vec.h"
 #include "sensor/kinds/rows.h"
+#include "sensor/point_images.h"
 
 namespace suite {
 
 namespace {
 
-class FrameCamera final : public Sensor {
+class FrameCamera final : public Sensor, public SeesPoints {
  public:
   FrameCamera(const Params& p, const SensorContext& context)
       : deliver_(context.deliver), name_(p.name("name", "camera")) {
@@ -66,11 +67,36 @@ class FrameCamera final : public Sensor {
     r.ray.origin = position_;
     r.ray.direction = normalized(forward_ * focal_ + right_ * x + down_ * y);
     r.ray.time = capture.window.begin + u[2] * (capture.window.end - capture.window.begin);
+    r.points_apart = true;
     return r;
   }
 
+  bool sees_points(const Capture&) const override { return true; }
+  void image_point(const Capture& capture, const std::function<Dir(double)>& direction_at, double,
+                   const std::function<void(const PointShare&)>& share) const override {
+    const auto place_at = [&](double time) -> std::optional<Vec2> {  // pixels
+      const Dir d = direction_at(time);
+      const double ahead = dot(d, forward_);
+      if (!(ahead > 0)) return std::nullopt;
+      const double scale = focal_ / (ahead * pitch_);
+      return Vec2{dot(d, right_) * scale + 0.5 * capture.columns, dot(d, down_) * scale + 0.5 * capture.rows};
+    };
+    const TrailSteps steps(capture.window, place_at);
+    for (int i = 0; i < steps.count; ++i) {
+      const double time = steps.time(i);
+      const auto at = place_at(time);
+      if (!at || !(at->x >= 0 && at->x < capture.columns && at->y >= 0 && at->y < capture.rows)) continue;
+      // A pixel sees evenly over its area, which is cos^3 / f^2 of solid angle a square metre.
+      const double ahead = dot(direction_at(time), forward_), f = focal_ / pitch_;
+      const size_t problem = static_cast<size_t>(at->y) * capture.columns + static_cast<size_t>(at->x);
+      share({problem, f * f / (ahead * ahead * ahead * steps.count), {}, time, position_});
+    }
+  }
+  void take_points(const Capture&, std::vector<SeenPoint> points) override { points_ = std::move(points); }
+
   void accept(CaptureResult&& result) override {
     Delivery d{*this, lay_out(tasks_, name_)[result.task][result.capture], std::move(result), bands_, {}, {}, {}, {}};
+    if (points_) d.texts.push_back({name_ + "_stars.csv", points_table(*points_, bands_)});
     deliver_(d);
   }
   std::span<const std::string> truth() const override { return truth_; }
@@ -87,6 +113,7 @@ class FrameCamera final : public Sensor {
   std::vector<Task> tasks_;
   Vec3 position_, forward_, right_, down_;
   double pitch_ = 0, focal_ = 0;
+  std::optional<std::vector<SeenPoint>> points_;  // where something that has some shines
 };
 
 }  // namespace

@@ -11,12 +11,13 @@
 #include <map>
 
 #include "sensor/kinds/rows.h"
+#include "sensor/point_images.h"
 
 namespace suite {
 
 namespace {
 
-class Platform final : public Sensor {
+class Platform final : public Sensor, public SeesPoints {
  public:
   Platform(const Params& p, const SensorContext& context) : context_(context), spec_(read_platform(p, context)) {
     std::vector<std::vector<ImageKey>> keys;
@@ -109,16 +110,33 @@ class Platform final : public Sensor {
       direction = direction * (instrument.lens.focus_distance / -direction.z) - origin;
     }
     out.ray = {at.point(origin), normalized(at.vector(direction)), t};
+    out.points_apart = suite::sees_points(spec_, capture);
     return out;
+  }
+
+  bool sees_points(const Capture& capture) const override { return suite::sees_points(spec_, capture); }
+  void image_point(const Capture& capture, const std::function<Dir(double)>& direction_at, double brightness,
+                   const std::function<void(const PointShare&)>& share) const override {
+    const Instrument& instrument = spec_.instruments[spec_.arrays[spec_.segments[capture.state].array].instrument];
+    const Prepared* prepared = prepared_for(capture);
+    suite::image_point(
+        spec_, capture,
+        [&](double t) { return prepared && prepared->still ? *prepared->still : pose(instrument, prepared, t); },
+        direction_at, brightness, share);
+  }
+  void take_points(const Capture& capture, std::vector<SeenPoint> points) override {
+    prepared_[key_of(capture)].points = std::move(points);
   }
 
   void accept(CaptureResult&& result) override {
     const PlatformSpec::Part part = spec_.parts[result.task][result.capture];
     const FocalArray& array = spec_.arrays[part.array];
     const Segment& segment = spec_.segments[part.segment];
-    prepared_.erase(key_of(spec_.tasks[result.task].captures[result.capture]));
     Piece piece;
+    if (const auto prepared = prepared_.extract(key_of(spec_.tasks[result.task].captures[result.capture])))
+      piece.points = std::move(prepared.mapped().points);
     piece.products = detect(spec_, segment, result, part.event);
+    piece.capture = result.capture;
     piece.result = std::move(result);
     auto& waiting = waiting_[{part.array, part.event}];
     waiting[part.segment] = std::move(piece);
@@ -138,12 +156,15 @@ class Platform final : public Sensor {
   struct Piece {
     CaptureResult result;
     std::vector<Product> products;
+    std::optional<std::vector<SeenPoint>> points;  // stars
+    size_t capture = 0;                            // number in its task
   };
   // What belongs to a capture that is being rendered, by its state and window.
   struct Prepared {
     std::unique_ptr<JitterWindow> vehicle;
     std::vector<std::unique_ptr<JitterWindow>> chain;
     std::optional<Pose> still;
+    std::optional<std::vector<SeenPoint>> points;  // where something that has some shines
   };
   using Key = std::array<double, 3>;
   static Key key_of(const Capture& c) { return {static_cast<double>(c.state), c.window.begin, c.window.end}; }
@@ -188,6 +209,10 @@ class Platform final : public Sensor {
     Delivery d{
         *this, rows_[task][capture], std::move(first.result), std::move(bands), std::move(first.products), {}, {}, {}};
     d.columns = std::move(columns);
+    for (const auto& [segment, piece] : pieces)
+      if (piece.points)
+        d.texts.push_back({spec_.tasks[task].captures[piece.capture].name + "_stars.csv",
+                           points_table(*piece.points, radiance_bands(segment))});
     const std::string who = strf("instrument '%s'", instrument.name.c_str());
     std::string spread;
     if (const auto& psf = spec_.segments[array.segments[0]].psf; psf && psf->cut() > 0)

@@ -1,5 +1,6 @@
 // The parts of the default sensor: a vehicle that carries instruments. Internal to libs/sensor/kinds.
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +14,8 @@
 #include "sensor/sensors.h"
 
 namespace suite {
+
+struct PointShare;
 
 // When the detectors of an array integrate.
 struct Readout {
@@ -137,6 +140,12 @@ NoiseAtBackground noise_of(const PlatformSpec& spec, const Segment& segment, siz
 std::vector<BandNoise> detector_noise_of(const PlatformSpec& spec, const Segment& segment);
 // For headers: NETD of every band; empty where there is no background.
 std::string noise_text(const PlatformSpec& spec, const Segment& segment);
+// platform_points.cpp: far points (point_images.h) on framing cameras that are focused at infinity. pose: of the
+// instrument at a time, in scene ENU.
+bool sees_points(const PlatformSpec& spec, const Capture& capture);
+void image_point(const PlatformSpec& spec, const Capture& capture, const std::function<Pose(double)>& pose,
+                 const std::function<Dir(double)>& direction_at, double brightness,
+                 const std::function<void(const PointShare&)>& share);
 // platform_log.cpp: pose and time of an instrument over the tasks, as CSV.
 std::string pose_log(const PlatformSpec& spec, const Instrument& instrument, const SensorContext& context);
 // The pose of the instrument at a time, without tables.

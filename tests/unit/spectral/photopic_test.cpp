@@ -32,5 +32,15 @@ TEST(Photopic, ASpectrumThatEndsWithinSightIsRefused) {
   EXPECT_THROW(photopic(Curve({0.45, 0.65}, {1, 1}, Outside::error)), Error);
 }
 
+// 683 lm/W at 555.016 nm for both eyes, by definition; the dark eye's maximum is at 507 nm.
+TEST(Scotopic, MeetsTheBrightEyeAt555) {
+  EXPECT_NEAR(scotopic_weight(0.555), 683, 0.01 * 683);
+  EXPECT_NEAR(scotopic_weight(0.507), 1700, 0.01 * 1700);
+  EXPECT_GT(scotopic_weight(0.507), scotopic_weight(0.49));
+  EXPECT_EQ(scotopic_weight(0.8), 0);
+  const Curve line({0.5069, 0.507, 0.5071}, {0, 1e4, 0}, Outside::zero);
+  EXPECT_NEAR(scotopic(line), scotopic_weight(0.507), 1);
+}
+
 }  // namespace
 }  // namespace suite

@@ -1,0 +1,306 @@
+#include "light/kinds/night_sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "light/environment.h"
+#include "light/far_points.h"
+#include "light/kinds/body.h"
+#include "light/kinds/rows.h"
+#include "light/kinds/sky.h"
+#include "motion/ut1.h"
+
+namespace suite {
+
+namespace {
+
+// Baked for a state. Drawn from cells of the upper hemisphere by what they send in the mean of all bins.
+class NightSky final : public Light {
+ public:
+  NightSky(std::shared_ptr<const NightMap> map, std::shared_ptr<const FarPoints> points, const SpectralState& state)
+      : map_(std::move(map)), points_(std::move(points)), bins_(state.size()) {
+    for (const NightMap::Component& c : map_->components())
+      for (const Bin& bin : state.bins)
+        spectra_.push_back(static_cast<float>(c.spectrum.mean(bin.low_um, bin.high_um)));
+    sky_.emplace(density());
+    nature_.far = nature_.wide = true;
+    nature_.drawn = sky_->tabulated();
+  }
+
+  std::optional<LightSample> sample(const LightReceiver&, const std::array<double, 4>& u, double) const override {
+    if (!nature_.drawn) return std::nullopt;
+    const DirectionSample drawn = sky_->draw({u[0], u[1]});
+    LightSample s;
+    s.direction = drawn.direction;
+    s.density = drawn.density;
+    s.scale = 1;
+    return s;
+  }
+  std::optional<LightMet> met_outside(Dir d, double) const override {
+    if (d.z < 0 || map_->components().empty()) return std::nullopt;
+    return LightMet{1, nullptr, nature_.drawn ? sky_->density(d) : 0};
+  }
+  void add(Dir d, double, float scale, std::span<float> radiance) const override {
+    add(d, scale, radiance, map_->components().size());
+  }
+  void add_without_points(Dir d, double, float scale, std::span<float> radiance) const override {
+    add(d, scale, radiance, points_ ? map_->first_star() : map_->components().size());
+  }
+  const FarPoints* points() const override { return points_.get(); }
+  size_t members() const override { return 0; }
+  std::optional<LightSample> sample_member(size_t, double, const LightReceiver&, const std::array<double, 4>&,
+                                           double) const override {
+    throw Bug("a night sky has no members");
+  }
+
+ private:
+  static constexpr size_t kMost = 32;  // components
+
+  // Of the first components.
+  void add(Dir d, float scale, std::span<float> radiance, size_t count) const {
+    std::array<double, kMost> memory;
+    const std::span<double> w(memory.data(), map_->components().size());
+    map_->weights(d, w);
+    for (size_t c = 0; c < count; ++c) {
+      if (w[c] == 0) continue;
+      const float by = scale * static_cast<float>(w[c]);
+      const float* spectrum = &spectra_[c * bins_];
+      for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += by * spectrum[i];
+    }
+  }
+
+  SkySpec density() const {
+    const size_t n = map_->components().size();
+    SUITE_CHECK(n <= kMost);
+    const NightMap::Integrals whole = map_->integrals();
+    // Each bin counts alike: a component with its shares of the bins' fluxes.
+    std::vector<double> share(n, 0.0);
+    for (size_t k = 0; k < bins_; ++k) {
+      double flux = 0;
+      for (size_t c = 0; c < n; ++c) flux += whole.sky[c] * static_cast<double>(spectra_[c * bins_ + k]);
+      if (flux > 0)
+        for (size_t c = 0; c < n; ++c) share[c] += static_cast<double>(spectra_[c * bins_ + k]) / flux;
+    }
+    SkySpec spec;
+    spec.radiance = Curve::constant(1);
+    spec.cells = true;
+    spec.zeniths = 45, spec.azimuths = 90;
+    std::vector<double> w(n);
+    for (size_t r = 0; r < spec.zeniths; ++r)
+      for (size_t c = 0; c < spec.azimuths; ++c) {
+        double sum = 0;
+        for (const double v : {0.25, 0.75})
+          for (const double u : {0.25, 0.75}) {
+            map_->weights(dir_from_angles((static_cast<double>(r) + v) / 45 * kPi / 2,
+                                          (static_cast<double>(c) + u) / 90 * 2 * kPi),
+                          w);
+            sum += std::inner_product(w.begin(), w.end(), share.begin(), 0.0);
+          }
+        spec.table.push_back(std::max(0.0, sum));
+      }
+    // Nothing is left out that lies between the places that were looked at.
+    const double mean =
+        std::accumulate(spec.table.begin(), spec.table.end(), 0.0) / static_cast<double>(spec.table.size());
+    for (double& v : spec.table) v += 0.02 * mean;
+    return spec;
+  }
+
+  std::shared_ptr<const NightMap> map_;
+  std::shared_ptr<const FarPoints> points_;  // null = they are spread, in views as well
+  size_t bins_;
+  std::vector<float> spectra_;  // [component][bin]
+  std::optional<Sky> sky_;
+};
+
+// Spectra of directions, so that none is negative.
+LightSpectra spectra_of(const NightMap& map) {
+  LightSpectra seen;
+  std::vector<GlowSpectrum> all;
+  const auto& components = map.components();
+  for (size_t i = 0; i < components.size(); ++i) {
+    const bool red = i == 1 && components[1].part == NightPart::zodiacal;
+    if (red) continue;
+    seen.names.push_back(strf("the night sky, %s %zu", name_of(components[i].part).c_str(), i));
+    all.push_back(components[i].spectrum);
+  }
+  seen.over = [all](const SpectralState& s) {
+    std::vector<std::vector<float>> rows;
+    for (const GlowSpectrum& g : all) {
+      rows.emplace_back();
+      for (const Bin& b : s.bins) rows.back().push_back(static_cast<float>(g.mean(b.low_um, b.high_um)));
+    }
+    return rows;
+  };
+  return seen;
+}
+
+class NightSkyLight final : public LightSpec {
+ public:
+  // A moment of it.
+  struct Now {
+    SceneFrame frame;
+    JulianDate tt, ut1;
+    double seconds;
+    std::shared_ptr<const NightMap> map;
+    std::shared_ptr<const FarPoints> points = {};  // not before it has settled
+    bool settled = false;
+  };
+  explicit NightSkyLight(NightSkyLightSpec spec, std::optional<Now> now = std::nullopt)
+      : spec_(std::move(spec)), now_(std::move(now)) {}
+  std::string key() const override { return "night_sky"; }
+  const SourceTime* date() const override { return now_ ? nullptr : &spec_.time; }
+
+  LightSpecPtr resolved(const LightMoment& at) const override {
+    if (now_) return nullptr;
+    const SceneFrame frame =
+        spec_.place ? SceneFrame(*spec_.place) : frame_of(at.scene, spec_.time.where, "a night sky");
+    const Instant epoch = instant_of(spec_.time), instant = epoch + at.seconds;
+    Now now{frame, julian_tt(instant), julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds, nullptr};
+    now.map = std::make_shared<const NightMap>(spec_, CelestialSphere(frame, now.tt, now.ut1));
+    at.said.push_back(sentence_of(*now.map, instant));
+    return std::make_shared<const NightSkyLight>(spec_, std::move(now));
+  }
+
+  // Air lifts the stars; where paths are scattered in it, nobody knows what it leaves of one.
+  void settle(SourceSpecs& all, size_t own, std::vector<std::string>& said) const override {
+    const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
+    if (now_->settled || !spec_.catalogue || !spec_.in_view || !(scale > 0)) return;
+    Now now = *now_;
+    now.settled = true;
+    if (all.air && all.air->scattering == AirScattering::traced)
+      said.push_back(
+          "night sky: under `scattering: traced` its stars are spread over cells of 3 degrees, in views as well");
+    else
+      now.points = std::make_shared<const FarPoints>(
+          points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all)), scale));
+    all.lights[own] = std::make_shared<const NightSkyLight>(spec_, std::move(now));
+  }
+
+  std::shared_ptr<const Light> bake(const Tracer&, const SpectralState& state) const override {
+    SUITE_CHECK(now_);
+    return std::make_shared<const NightSky>(now_->map, now_->points, state);
+  }
+  bool in_scene() const override { return false; }
+  bool shines(double low_um, double high_um) const override { return high_um > kNightLow && low_um < kNightHigh; }
+  void add_spectra(std::vector<LightSpectra>& to) const override {
+    SUITE_CHECK(now_);
+    to.push_back(spectra_of(*now_->map));
+  }
+  std::vector<std::string> hardly_met(double) const override { return {}; }
+
+ private:
+  static std::optional<SurfaceAir> air_of(const SourceSpecs& all) {
+    if (!all.has_air()) return std::nullopt;
+    SurfaceAir air;
+    if (all.air) {
+      const AirLevel level = all.air->profile.at(all.air->height_of_scene());
+      air.pressure = level.pressure, air.temperature = level.temperature;
+    } else if (all.atmosphere) {
+      air.pressure = all.atmosphere->pressure * std::exp(-all.atmosphere->scene_height / 8000);
+    }
+    return air;
+  }
+  FarPoints points_of(const CelestialSphere& sphere, double scale) const {
+    FarPoints all;
+    all.pole = sphere.pole();
+    all.seconds = now_->seconds;
+    all.scale = scale;
+    for (const CatalogueStar& s : *spec_.catalogue)
+      if (s.v <= spec_.faintest)
+        all.points.push_back({s.number, s.v, star_temperature(s.colour), sphere.seen(s.place)});
+    return all;
+  }
+  static std::string sentence_of(const NightMap& map, Instant instant) {
+    const NightIlluminance lx = illuminance_of(map);
+    const auto sum = [](const auto& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); };
+    std::string by_part;
+    for (size_t p = 0; p < kNightParts; ++p)
+      if (lx.photopic[p] > 0)
+        by_part +=
+            strf("%s%s %.3g", by_part.empty() ? "" : ", ", name_of(static_cast<NightPart>(p)).c_str(), lx.photopic[p]);
+    return strf("night sky at %s: %.3g lx on a level plane without the air (%s); scotopic %.3g lx",
+                to_iso8601(utc_from_instant(instant)).c_str(), sum(lx.photopic), by_part.c_str(), sum(lx.scotopic));
+  }
+
+  const NightSkyLightSpec spec_;
+  const std::optional<Now> now_;  // none = not resolved
+};
+
+void read_parts(const Params& p, NightSkySpec& sky) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < kNightParts; ++i) names.push_back(name_of(static_cast<NightPart>(i)));
+  if (const auto parts = p.find("parts")) {
+    sky.scale.fill(0);
+    for (const Params& one : parts->items()) {
+      double& scale = sky.scale[one.as_choice(names)];
+      if (scale > 0) throw one.error("the part '" + one.as_text() + "' is named twice", "name it once");
+      scale = 1;
+    }
+    if (parts->items().empty()) throw parts->error("no part is named", "one or more of the parts, or no `parts`: all");
+  }
+  const auto scales = p.find("scale");
+  if (!scales) return;
+  for (const std::string& key : scales->keys()) {
+    const auto at = std::find(names.begin(), names.end(), key);
+    if (at == names.end())
+      throw Error(scales->where(key), "the night sky has no part '" + key + "'", name_hint(key, names));
+    sky.scale[static_cast<size_t>(at - names.begin())] *= scales->number_in(key, 0, 1e6, "(of the part's light)");
+  }
+}
+
+SourceTime time_of(const Params& p, const LightContext& context) {
+  if (const auto time = p.find("time_utc")) {
+    SourceTime given{time->as_text(), time->where()};
+    instant_of(given);
+    return given;
+  }
+  if (context.date) return *context.date;
+  throw p.error("a night sky needs a date", "give `epoch` to the simulation, or `time_utc` here");
+}
+
+LightSpecPtr read_night_sky(const Params& p, const LightContext& context) {
+  NightSkyLightSpec sky;
+  read_parts(p, sky);
+  sky.time = time_of(p, context);
+  if (const auto place = p.find("place")) {
+    sky.place = Geodetic{place->number_in("latitude_deg", -90, 90, "degrees"),
+                         place->number_in("longitude_deg", -180, 360, "degrees"),
+                         place->number_in("height_m", -1000, 20000, "m above WGS84", 0)};
+  }
+  const auto catalogue = p.find("catalogue");
+  if (!catalogue || catalogue->as_choice({"builtin", "none"}) == 0)
+    sky.catalogue = {std::shared_ptr<void>(), &bright_star_catalogue()};
+  sky.faintest = p.number_in("stars_to_mag", -2, 20, "mag", sky.faintest);
+  if (const auto resolve = p.find("resolve_stars")) sky.in_view = resolve->as_choice({"in_view", "none"}) == 0;
+  sky.solar_flux = p.number_in("solar_flux_sfu", 50, 400, "sfu", sky.solar_flux);
+  return make_light(std::move(sky));
+}
+
+}  // namespace
+
+NightIlluminance illuminance_of(const NightMap& map) {
+  NightIlluminance lx;
+  const std::vector<double> plane = map.integrals().plane;
+  for (size_t i = 0; i < plane.size(); ++i) {
+    const NightMap::Component& c = map.components()[i];
+    lx.photopic[static_cast<size_t>(c.part)] += plane[i] * c.spectrum.photopic();
+    lx.scotopic[static_cast<size_t>(c.part)] += plane[i] * c.spectrum.scotopic();
+  }
+  return lx;
+}
+
+LightSpecPtr make_light(NightSkyLightSpec spec) { return std::make_shared<const NightSkyLight>(std::move(spec)); }
+
+LightRow night_sky_row() {
+  return {
+      {"night_sky",
+       "natural night sky by place and date: zodiacal light, airglow, starlight, 9096 stars (0.3 to 2.5 um)",
+       "W/(m2 sr um)", read_night_sky},
+      false,
+      "The sky by night. A sample of it at every node, with a visibility ray; zodiacal light, airglow and stars are "
+      "looked up for each.",
+      "night_sky: {time_utc: 2026-03-20T22:00:00Z, place: {latitude_deg: 49.4, longitude_deg: 8.7}}\n"};
+}
+
+}  // namespace suite

@@ -1,0 +1,16 @@
+// Far points (stars) on a sensor's focal plane: put there one by one, dimmed by the air of the line of sight, hidden by
+// what stands in it.
+//
+// Assumes: what stands in the way hides them wholly (panes and water, too); media do not dim them; the Earth, where the
+// simulation has none, is a sphere of 6371 km under the scene.
+#pragma once
+#include "scheduler/primed.h"
+#include "sensor/sensor.h"
+
+namespace suite {
+
+// Adds the points of the lights to a result's radiance, and to the channels that take light from outside; hands a
+// sensor the table of those it sees. Nothing where the sensor, or no light, knows points.
+void add_points(const Primed& primed, Sensor& sensor, const Capture& capture, CaptureResult& result);
+
+}  // namespace suite

@@ -1,0 +1,189 @@
+// Stars on focal planes: places and energy by closed forms, through perspective, distortion, point spread, motion of the
+// sky and air; hidden by what stands in front.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "light/kinds/night_sky.h"
+#include "support/platform_kit.h"
+
+namespace suite {
+namespace {
+
+using test::PlatformKit;
+
+constexpr Geodetic kPlace{49.4, 8.7, 120};
+constexpr const char* kUtc = "2026-03-20T22:00:00Z";
+constexpr CatalogueStar kStar{1, {1.9, 0.7, 0, 0}, 3.0, 0.6};  // high in the west
+constexpr double kStep = 1e-4;                                 // rad, of a pixel on the axis: 10 um at 100 mm
+
+CelestialSphere sphere() {
+  const Instant t = instant_from_utc(parse_iso8601(kUtc));
+  return CelestialSphere(SceneFrame(kPlace), julian_tt(t), julian_ut1(t, 0));
+}
+SourceSpecs stars_alone(std::vector<CatalogueStar> stars) {
+  NightSkyLightSpec night;
+  night.scale = {0, 0, 0, 0, 1};
+  night.catalogue = std::make_shared<const std::vector<CatalogueStar>>(std::move(stars));
+  night.time.utc = kUtc;
+  night.place = kPlace;
+  SourceSpecs sources;
+  sources.add(night);
+  return sources;
+}
+// In the band of 0.55 um, above the air, W/(m2 um): Planck over the band, by the trapezoidal rule.
+double above(const CatalogueStar& star) {
+  double sum = 0;
+  const Curve shape = star_shape(star_temperature(star.colour));
+  for (int i = 0; i < 100; ++i) sum += shape.at(0.545 + (i + 0.5) * 1e-4) / 100;
+  return kVegaIrradiance * flux_of(star.v) * sum;
+}
+std::string bands() { return "bands: [{name: v, center_um: 0.55, fwhm_um: 0.01, shape: rectangular}]\n"; }
+
+// A camera that looks past the star by angles (rad) to its left and upwards.
+std::string camera(Dir star, double right, double up, const std::string& more = {}) {
+  const Frame frame = Frame::with_tangent(star, cross(star, {0, 0, 1}));
+  const Vec3 at = frame.z + frame.x * std::tan(right) - cross(frame.z, frame.x) * std::tan(up);
+  return "kind: frame_camera\nname: c\ncolumns: 200\nrows: 200\npitch_um: 10\nfocal_length_mm: 100\n"
+         "position_m: [0, 0, 2]\nlook_at_m: [" +
+         strf("%.17g, %.17g, %.17g", 1e3 * at.x, 1e3 * at.y, 2 + 1e3 * at.z) + "]\npaths: 4\n" + bands() + more;
+}
+// Sum of radiance times the solid angle of its pixel.
+double energy(const test::Shot& shot, double f_in_pixels) {
+  double sum = 0;
+  const CaptureResult& r = shot.result;
+  for (size_t p = 0; p < r.problems(); ++p) {
+    const double x = static_cast<double>(p % r.columns) + 0.5 - 0.5 * r.columns,
+                 y = static_cast<double>(p / r.columns) + 0.5 - 0.5 * r.rows,
+                 distance2 = f_in_pixels * f_in_pixels + x * x + y * y;
+    sum += r.radiance[p * r.values_per_problem()] * f_in_pixels / (distance2 * std::sqrt(distance2));
+  }
+  return sum;
+}
+struct Listed {
+  double number, v, column, row, irradiance;
+};
+std::vector<Listed> table_of(const test::Shot& shot) {
+  std::vector<Listed> all;
+  for (const TextFile& text : shot.texts) {
+    std::istringstream lines(text.text);
+    for (std::string line; std::getline(lines, line);) {
+      Listed s{};
+      if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &s.number, &s.v, &s.column, &s.row, &s.irradiance) == 5)
+        all.push_back(s);
+    }
+  }
+  return all;
+}
+std::shared_ptr<Scene> ground(std::vector<Mesh> more = {}) {
+  more.push_back(test::mesh_of({{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {0, 1, 2, 0, 2, 3}, 0));
+  return test::scene_of(std::move(more), {test::material("ground", test::lambert(0.2))});
+}
+
+TEST(Stars, FrameCameraKeepsTheirEnergyAndPlace) {
+  const Dir star = sphere().without_air(kStar.place);
+  ASSERT_GT(star.z, 0.5);
+  for (const auto& [right, up] : {std::pair{0.0, 0.0}, {30.3 * kStep, -70.2 * kStep}}) {
+    PlatformKit kit;
+    kit.render(ground(), stars_alone({kStar}), camera(star, right, up));
+    EXPECT_NEAR(energy(kit.shots[0], 1e4) / above(kStar), 1, 1e-4);
+    const std::vector<Listed> seen = table_of(kit.shots[0]);
+    ASSERT_EQ(seen.size(), 1u);
+    EXPECT_NEAR(seen[0].irradiance / above(kStar), 1, 1e-4);
+    // In the pixel that holds it (the table has that pixel's middle).
+    EXPECT_NEAR(std::hypot(seen[0].column - 100, seen[0].row - 100), std::hypot(std::tan(right), std::tan(up)) / kStep, 0.8);
+  }
+}
+
+// 20 degrees off the axis a pixel sees 0.83 of the solid angle: radiance is as much higher.
+TEST(Stars, WideAngles) {
+  const Dir star = sphere().without_air(kStar.place);
+  PlatformKit kit;
+  std::string wide = camera(star, 0.35, 0);
+  wide.replace(wide.find("focal_length_mm: 100"), 20, "focal_length_mm: 2.5");
+  kit.render(ground(), stars_alone({kStar}), wide);
+  const double cosine = std::cos(0.35);
+  EXPECT_NEAR(energy(kit.shots[0], 250) / above(kStar), 1, 0.01);  // by the pixel's middle
+  double brightest = 0;
+  for (const double r : kit.shots[0].result.radiance) brightest = std::max(brightest, r);
+  EXPECT_NEAR(brightest / (above(kStar) * 250 * 250 / std::pow(cosine, 3)), 1, 1e-4);
+  EXPECT_GT(std::fabs(brightest / (above(kStar) * 250 * 250) - 1), 0.1) << "the solid angle must be noticed";
+}
+
+TEST(Stars, FaintOnesAndHiddenOnesAreNotListed) {
+  const Dir star = sphere().without_air(kStar.place);
+  CatalogueStar faint = kStar;
+  faint.v = 9;  // beyond the limit of 8
+  PlatformKit kit;
+  kit.render(ground(), stars_alone({faint}), camera(star, 0, 0));
+  EXPECT_TRUE(table_of(kit.shots[0]).empty());
+  EXPECT_EQ(energy(kit.shots[0], 1e4), 0);
+  // A board between camera and star.
+  const Frame f = Frame::around(star);
+  const Vec3 middle = Vec3{0, 0, 2} + star * 50;
+  const Mesh board = test::mesh_of({middle - f.x - f.y, middle + f.x - f.y, middle + f.x + f.y, middle - f.x + f.y},
+                                   {0, 1, 2, 0, 2, 3}, 0);
+  PlatformKit hidden;
+  hidden.render(ground({board}), stars_alone({kStar}), camera(star, 0, 0));
+  EXPECT_TRUE(table_of(hidden.shots[0]).empty());
+  EXPECT_LT(energy(hidden.shots[0], 1e4), 0.01 * above(kStar));
+}
+
+// In 100 s the star goes 15.041 arc seconds a second times cos(declination).
+TEST(Stars, TrailsKeepTheirEnergyAndLength) {
+  const Dir star = sphere().without_air(kStar.place);
+  PlatformKit kit;
+  kit.render(ground(), stars_alone({kStar}), camera(star, 0, 0, "time_s: 0\nintegration_time_s: 100\n"));
+  const CaptureResult& r = kit.shots[0].result;
+  EXPECT_NEAR(energy(kit.shots[0], 1e4) / above(kStar), 1, 1e-4);
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+  for (size_t p = 0; p < r.problems(); ++p) {
+    if (!(r.radiance[p] > 0)) continue;
+    const auto x = static_cast<double>(p % r.columns), y = static_cast<double>(p / r.columns);
+    left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+  }
+  const double expected = 100 * 7.292115e-5 * std::cos(kStar.place.declination) / kStep;
+  EXPECT_GT(expected, 50);
+  EXPECT_NEAR(std::hypot(right - left, bottom - top), expected, 2);
+}
+
+// Beer's law in layers that dim: a depth of 0.3 at the star's zenith angle.
+TEST(Stars, AirDimsThem) {
+  const Dir star = sphere().without_air(kStar.place);
+  SourceSpecs sources = stars_alone({kStar});
+  AtmosphereSpec air;
+  air.heights = {0, 1000};
+  air.rayleigh = false;
+  AtmosphereSpec::Gas gas;
+  gas.name = "grey";
+  gas.layers = {Curve::constant(0.3)};
+  air.gases.push_back(gas);
+  air.temperature_k = {280};
+  sources.atmosphere = air;
+  PlatformKit kit;
+  kit.render(ground(), sources, camera(star, 0, 0));
+  const std::vector<Listed> seen = table_of(kit.shots[0]);
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_NEAR(seen[0].irradiance / above(kStar), std::exp(-0.3 * 0.998 / star.z), 2e-3);  // 2 m up
+}
+
+// A lens with distortion and a Gaussian spot: energy by the pixels' solid angles, centre by the lens.
+TEST(Stars, PlatformsSpreadThem) {
+  const Dir star = sphere().without_air(kStar.place);
+  const double azimuth = std::atan2(star.x, star.y) / kDegree, height = std::asin(star.z) / kDegree;
+  PlatformKit kit;
+  kit.frame = SceneFrame(kPlace);
+  kit.render(ground(), stars_alone({kStar}),
+             strf("kind: platform\nmotion: {kind: straight, position_m: [0, 0, 2], heading_deg: %.12g, speed_m_s: 0}\n"
+                  "tasks: [{start: 0, stop: 0}]\ninstruments:\n  - name: i\n    rotate_deg: [%.12g, 0, 0]\n",
+                  azimuth, 90 + height - 0.2) +
+                 "    focal_length_mm: 100\n    distortion: {k1: -0.5}\n    psf: {kind: gaussian, sigma_um: 12}\n"
+                 "    arrays:\n      - {name: a, columns: 200, rows: 200, pitch_um: 10, paths: 4, "
+                 "bands: [{name: v, center_um: 0.55, fwhm_um: 0.01, shape: rectangular}]}\n");
+  ASSERT_EQ(kit.shots.size(), 1u);
+  EXPECT_NEAR(energy(kit.shots[0], 1e4) / above(kStar), 1, 1e-4);
+}
+
+}  // namespace
+}  // namespace suite
