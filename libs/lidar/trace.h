@@ -22,9 +22,9 @@
 
 namespace suite {
 
+// Threads are those of base/parallel.h; results do not depend on their number.
 struct TraceOptions {
   uint64_t first = 0, count = UINT64_MAX;  // pulses of the train; what lies beyond its end is left out
-  unsigned threads = 0;                    // 0 = as many as the machine has; results do not depend on it
   uint64_t seed = 1;
   uint32_t scrambles = 16;  // independent parts of a row's paths, 2..64, for standard errors; at most one a path
   // Of the kernel; nodes and scatterings follow from LidarInstrument::orders, the seed from above.
