@@ -167,7 +167,7 @@ void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport
     at = end;
   }
   report.laser_first = plan_.laser_first;
-  for (const auto& [um, line] : kits_) report.passive |= line && line->shines();
+  for (const auto& [um, line] : kits_) report.passive |= line->shines(), report.hot_spot |= line->any_leaves();
   if (report.paths > 0) report.truncated /= static_cast<double>(report.paths);
 }
 
