@@ -16,7 +16,7 @@ namespace suite {
 
 class LaserBeam {
  public:
-  static constexpr double kNarrowest = 1e-7;  // rad, half-angle
+  static constexpr double kNarrowest = 1e-6;  // rad, half-angle: what hits on large triangles are exact to
 
   // Error: angles out of range, an image of no energy, or one with a waist.
   explicit LaserBeam(const BeamProfile& profile);
