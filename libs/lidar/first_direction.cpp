@@ -5,7 +5,8 @@
 
 namespace suite {
 
-FirstDirection::FirstDirection(const LaserBeam& beam, const ReceiverField& field, double near, double far, InField in_field)
+FirstDirection::FirstDirection(const LaserBeam& beam, const ReceiverField& field, double near, double far,
+                               InField in_field)
     : beam_(beam), field_(field), near_(near), far_(far) {
   constexpr double kBeside = 0.25;
   const bool narrow = beam.solid_angle() < field.solid_angle();

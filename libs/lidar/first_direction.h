@@ -12,8 +12,8 @@
 #include <array>
 #include <vector>
 
-#include "lidar/laser_beam.h"
 #include "lidar/field.h"
+#include "lidar/laser_beam.h"
 #include "lidar/pulse_at_work.h"
 
 namespace suite {

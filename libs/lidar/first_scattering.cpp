@@ -54,8 +54,8 @@ double FirstScattering::air(Vec3 from, Dir direction, double length) {
 
 // What walk_ stands in.
 void FirstScattering::add_stretch(double begin, double end) {
-  Stretch s{begin,       end,         0, 0, 0, depth_, leaf_depth_, 0, fall_depth_, contents_.size(), 0,
-            legs_.size() - 1, walk_.layer()};
+  Stretch s{begin,        end, 0, 0, 0, depth_, leaf_depth_, 0, fall_depth_, contents_.size(), 0, legs_.size() - 1,
+            walk_.layer()};
   for (const Constituent& c : walk_.contents()) {
     const BakedMedium& m = kit_.optics.media()[c.medium];
     const double scattering = c.density * double{m.scattering[0]},
@@ -136,8 +136,8 @@ double FirstScattering::phase(const Stretch& s, double cosine) {
 }
 
 auto FirstScattering::stretch_at(double t) const -> const Stretch* {
-  const auto after = std::upper_bound(stretches_.begin(), stretches_.end(), t,
-                                      [](double x, const Stretch& s) { return x < s.begin; });
+  const auto after =
+      std::upper_bound(stretches_.begin(), stretches_.end(), t, [](double x, const Stretch& s) { return x < s.begin; });
   return after == stretches_.begin() ? nullptr : &*(after - 1);
 }
 
@@ -197,7 +197,8 @@ void FirstScattering::place(const Ray& ray, Vec3 end_place, const Gate& gate, do
     to.push_back({there_and_back + leg.delay * more, light, seen->spectrum});
     return;
   }
-  waiting_.push_back({{arrival, light, seen->spectrum}, {x, seen->direction, ray.time, ray.draw}, seen->distance, s.leg});
+  waiting_.push_back(
+      {{arrival, light, seen->spectrum}, {x, seen->direction, ray.time, ray.draw}, seen->distance, s.leg});
 }
 
 // Those whose end has to be looked for.
@@ -226,7 +227,8 @@ void FirstScattering::trace(const Ray& ray, Vec3 end_place, const Gate& gate, co
                             std::vector<Scattered>& to) {
   to.clear();
   walk(ray);
-  surface_share_ = leaf_depth_ > 0 && length(end_place - ray.origin) <= kSameWay * surface_at_ ? std::exp(leaf_depth_) : 1;
+  surface_share_ =
+      leaf_depth_ > 0 && length(end_place - ray.origin) <= kSameWay * surface_at_ ? std::exp(leaf_depth_) : 1;
   Span s = span(ray.origin, end_place, gate);
   if (!(s.high > s.low && s.all > 0)) return;
   const uint32_t by_fall = strata.samples / 2, evenly = strata.samples - by_fall;

@@ -1,9 +1,10 @@
 // Light that comes back after one scattering in what fills space, as an integral along the first ray of a path. Half of
 // its places stand evenly over the part of the ray from which light arrives within the gate, so that every range bin
 // has its share of them however thin the matter is; the others fall off with what is left of the light on both ways, so
-// that dense matter has its share. Both are stratified and joined by the balance heuristic. It takes the place of the kernel's own single scattering there (order 1, by a
-// medium), whose places are drawn by free flights. With s the scattering coefficient, P the phase function, S the
-// strength of the other end at x (ends.h) and T what is left on either way,
+// that dense matter has its share. Both are stratified and joined by the balance heuristic. It takes the place of the
+// kernel's own single scattering there (order 1, by a medium), whose places are drawn by free flights. With s the
+// scattering coefficient, P the phase function, S the strength of the other end at x (ends.h) and T what is left on
+// either way,
 //   integral of T(ray, x) s(x) P(x) T(x, end) S(x) dx.
 //
 // Where the way back is the way out (the end lies within kSameWay of the ray as seen from x) it is not asked a second
@@ -52,15 +53,15 @@ class FirstScattering {
 
  private:
   struct Stretch {
-    double begin, end;        // m along the ray
-    double extinction, rate;  // 1/m; rate: of scattering
-    double leaves;            // extinction by leaves, 1/m
+    double begin, end;         // m along the ray
+    double extinction, rate;   // 1/m; rate: of scattering
+    double leaves;             // extinction by leaves, 1/m
     double depth, leaf_depth;  // up to begin
     double fall, fall_depth;   // extinction that places follow, and its depth up to begin
-    size_t contents, count;   // in contents_
+    size_t contents, count;    // in contents_
     size_t leg, layer;
   };
-  struct Leg {  // between two boundaries
+  struct Leg {                          // between two boundaries
     double begin, arrival, delay, air;  // air: transmittance up to begin
     bool airless;
     MediumStack stack;
@@ -78,9 +79,9 @@ class FirstScattering {
   double air(Vec3 from, Dir direction, double length);
   // The part of a ray that places stand on, and how.
   struct Span {
-    double low, high;   // m
-    double before;      // depth of fall up to low
-    double all;         // 1 - exp(-2 depth) from there to high
+    double low, high;        // m
+    double before;           // depth of fall up to low
+    double all;              // 1 - exp(-2 depth) from there to high
     double evenly, by_fall;  // places of either kind
   };
   Span span(const Vec3& origin, Vec3 end_place, const Gate& gate) const;

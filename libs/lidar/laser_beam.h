@@ -40,7 +40,7 @@ class LaserBeam {
   double cells_density(Vec2 q) const;
   Vec2 sample_cells(Vec2 u) const;
   BeamProfile profile_;
-  double edge_ = 0;                 // tangent
+  double edge_ = 0;  // tangent
   double solid_angle_ = 0, width_ = 0;
   std::vector<double> cumulative_;  // of the image, up to 1
 };

@@ -79,8 +79,9 @@ auto PulseRows::make_job(std::shared_ptr<const Light> end, const ReceiverEnd* re
   method.gloss_photons = 0;
   if (!passive) {  // passive light has no last order
     const KernelContext context{kit_.surface, kit_.optics, lit, method};
-    // A way through an interface at the last order is found from a node that could go on.
-    const uint32_t more = refracts(context) ? 1 : 0;
+    // Smooth interfaces are no orders of their own: a path may pass some more.
+    constexpr uint32_t kPasses = 16;
+    const uint32_t more = refracts(context) ? kPasses : 0;
     method.max_nodes = static_cast<int>(std::min<uint32_t>(plan_.instrument.orders, 1u << 20) + more);
     method.max_scatterings = plan_.instrument.orders;
   }
@@ -116,8 +117,8 @@ SensorRay PulseRows::from_laser(const PulseAtWork& pulse, const SampleStream& st
   return {{pulse.laser.point(start.place), pulse.laser.vector(start.direction), pulse.time}, 1};
 }
 
-// Places on the first ray where matter scatters: as many that, over the paths of a scramble, most range bins of the gate
-// have one.
+// Places on the first ray where matter scatters: as many that, over the paths of a scramble, most range bins of the
+// gate have one.
 void PulseRows::scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray, const FirstScattering::Strata& strata,
                              RangeSink::Lane& lane) {
   const Vec3 end = plan_.laser_first ? pulse.receiver.translation : pulse.laser.translation;
@@ -135,8 +136,8 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
   for (size_t k = 0; k < pulses_.size(); ++k) {
     const PulseAtWork& pulse = pulses_[k];
     for (size_t pixel = range.first_pixel; pixel < (from_laser ? range.first_pixel + 1 : range.last_pixel); ++pixel) {
-      const uint64_t key = SampleStream::problem_key(plan_.options.seed, plan_.instrument_key,
-                                                     hash_of(pulse.number, pixel, job.active));
+      const uint64_t key =
+          SampleStream::problem_key(plan_.options.seed, plan_.instrument_key, hash_of(pulse.number, pixel, job.active));
       RangeBins* const row = &rows_[k * pixels + pixel - range.first_pixel];
       for (uint64_t s = 0; s < scrambles; ++s) {
         const SampleStream stream(key, static_cast<uint32_t>(s));
@@ -144,14 +145,15 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
         for (uint32_t sample = 0; sample < count; ++sample) {
           const std::array<double, 4> u = stream.draw(sample, dimensions::kSensor.first);
           RangeSink::Lane lane{row, static_cast<int>(s), pulse.pulse.energy * kit_.photons_of_joule, 0};
-          const SensorRay ray = from_laser ? this->from_laser(pulse, stream, sample, u)
-                                           : from_receiver(job, pulse, pixel, u, lane);
+          const SensorRay ray =
+              from_laser ? this->from_laser(pulse, stream, sample, u) : from_receiver(job, pulse, pixel, u, lane);
           lane.active /= count, lane.passive /= count;
           row->add_paths(job.active ? 1 : 0);
           if (lane.active == 0 && lane.passive == 0) continue;
           if (once_ && lane.active > 0)
             scatter_once(job, pulse, ray.ray,
-                         {sample, count, std::clamp(plan_.head.bins / count, 4u, 64u), hash_of(key, s, 0x6f6e6365)}, lane);
+                         {sample, count, std::clamp(plan_.head.bins / count, 4u, 128u), hash_of(key, s, 0x6f6e6365)},
+                         lane);
           const uint32_t p = job.waiting++;
           job.sink.begin(p, lane);
           job.throughputs.begin(p, 1, nullptr);

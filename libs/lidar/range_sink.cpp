@@ -29,7 +29,8 @@ void RangeSink::add(std::span<const Contribution> stage, SpectralThroughputs& th
     const Lane& lane = lanes_[c.path];
     const bool active = c.light == end_;
     const double photons = active ? lane.active : lane.passive;
-    if (!c.arrived() || photons == 0 || (active && c.order > orders_)) continue;
+    const uint32_t order = c.order - c.smooth;
+    if (!c.arrived() || photons == 0 || (active && order > orders_)) continue;
     double L = double{throughputs.throughput(c.path)[0]} * c.factor.scale * c.scale * photons;
     if (c.factor.spectrum) L *= double{c.factor.spectrum[0]};
     if (c.radiance) L *= double{c.radiance[0]};
@@ -43,7 +44,7 @@ void RangeSink::add(std::span<const Contribution> stage, SpectralThroughputs& th
       ++failures_;
       continue;
     }
-    const bool multiple = c.order > 1;
+    const bool multiple = order > 1;
     RangeBins& row = lane.rows[active && receiver_ ? receiver_->pixel_of(c.radiance) : 0];
     if (active)
       row.deposit(lane.scramble, c.arrival / kSpeedOfLight, L, multiple, tag(c.path));

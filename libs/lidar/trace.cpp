@@ -46,10 +46,11 @@ std::vector<size_t> channels_of(const LidarInstrument& instrument, const Tracer&
     return at == instrument.tags.end() ? size_t{0} : static_cast<size_t>(at - instrument.tags.begin()) + 2;
   };
   channels.assign(tracer.object_count(), 0);
-  tracer.each("surfaces with channels of a lidar", [](const TracedObject&) { return true; },
-              [&](uint32_t o, const TracedObject& object) {
-                if (object.tag != kNone) channels[o] = channel(scene.tags[object.tag]);
-              });
+  tracer.each(
+      "surfaces with channels of a lidar", [](const TracedObject&) { return true; },
+      [&](uint32_t o, const TracedObject& object) {
+        if (object.tag != kNone) channels[o] = channel(scene.tags[object.tag]);
+      });
   return channels;
 }
 
@@ -158,8 +159,8 @@ void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport
       clear_negative(block);
       for (size_t e = 0; e < block.entries(); ++e)
         if (block.bin[e] > 0)
-          report.photons += block.value[e * head_.channels.size() + kSingle] +
-                            block.value[e * head_.channels.size() + kMultiple];
+          report.photons +=
+              block.value[e * head_.channels.size() + kSingle] + block.value[e * head_.channels.size() + kMultiple];
       report.pulses += block.pulses.size();
       if (!block.pulses.empty()) sink.take(std::move(block));
     }

@@ -8,6 +8,8 @@
 //
 // What matter scatters once has places of its own in every range bin (first_scattering.h). Leaves that fill space as
 // matter (phase function `leaves`) let out what they let in where laser and receiver are together.
+// Orders count scattering: smooth surfaces, which only turn light, are passed without one, so that a bed under flat
+// water is seen by single scattering. Light that smooth surfaces alone bring back (corner cubes) is not found.
 // Arrival is the optical path with the group index of the matter on it, where that is known, else its phase index; the
 // air counts as vacuum, in arrivals and in ResponseHead::group_index alike.
 // Assumes: reciprocal surfaces; an aperture and a laser that are points but for the beam's waist; spectra alone, no

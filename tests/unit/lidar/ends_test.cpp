@@ -8,8 +8,8 @@
 namespace suite::test {
 namespace {
 
-// Totals and ten parts of the gate, of both ends. Parts of less than 2 % are left out: a few paths bring them, and their
-// errors are not known.
+// Totals and ten parts of the gate, of both ends. Parts of less than 2 % are left out: a few paths bring them, and
+// their errors are not known.
 void expect_same(const std::shared_ptr<const Scene>& scene, DownLidar lidar, const std::string& what) {
   lidar.start_from = StartFrom::laser;
   const Received laser = receive(scene, lidar);
@@ -64,8 +64,8 @@ TEST(LidarEnds, AgreeOverLeaves) {
   meshes.push_back(mesh_of(v, f, 1));
   DownLidar lidar = wide(10);
   lidar.gate_of(5, 14, 1e-9);
-  expect_same(scene_of(std::move(meshes), {material("soil", lambert(0.2)), material("leaf", lambert(0.45, 0.4))}), lidar,
-              "leaves");
+  expect_same(scene_of(std::move(meshes), {material("soil", lambert(0.2)), material("leaf", lambert(0.45, 0.4))}),
+              lidar, "leaves");
 }
 
 TEST(LidarEnds, AgreeInFogOverASlab) {
@@ -93,8 +93,8 @@ TEST(LidarEnds, AgreeFromTwoPlaces) {
   expect_same(scene, lidar, "two places over mist");
 }
 
-// A spot of the same angle and power as a top hat of one joule, a camera of one pixel: the sum over all range bins. (The
-// beam is even over the plane, the spot over the sphere: they differ by 1.5 % at the edge.)
+// A spot of the same angle and power as a top hat of one joule, a camera of one pixel: the sum over all range bins.
+// (The beam is even over the plane, the spot over the sphere: they differ by 1.5 % at the edge.)
 TEST(LidarEnds, SumsOfRangeBinsAreTheSteadyImage) {
   const double half = 0.1, height = 3;
   const auto scene = scene_of({box({-4, -3, 0}, {4, 3, 4}, 0, false)}, {material("wall", lambert(0.6))});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "motion/track.h"
 #include "tests/support/lidar_kit.h"
 #include "tests/support/message_of.h"
 
@@ -32,7 +33,8 @@ double covered(const std::shared_ptr<const Scene>& scene, const LidarInstrument&
       const ResponseRow row(got.head, b, r);
       for (size_t k = 0; k < row.size(); ++k) {
         const RunningStats& all = truth[row.bin(k)];
-        if (row.contributions(k) < 30 || all.n() < rows || !(all.variance() > 1e-12 * all.mean() * all.mean())) continue;
+        if (row.contributions(k) < 30 || all.n() < rows || !(all.variance() > 1e-12 * all.mean() * all.mean()))
+          continue;
         ++intervals;
         inside += std::fabs(row.photons(k) - all.mean()) <= 2.1314 * std::sqrt(row.photon_variance(k));
       }
@@ -51,7 +53,7 @@ TEST(LidarErrors, IntervalsCoverWhatTheySay) {
   const auto room = scene_of({box({-6, -5, 0}, {5, 6, 12}, 0, false), box({-0.5, -0.3, 0}, {0.2, 0.3, 2}, 0, true)},
                              {material("wall", lambert(0.6))});
   const auto hills = scene_of({mesh_of({{-9, -9, -9}, {9, -9, 9}, {9, 9, 9}, {-9, 9, -9}}, {0, 1, 2, 0, 2, 3}, 0)},
-                        {material("soil", lambert(0.4))});
+                              {material("soil", lambert(0.4))});
   const std::shared_ptr<Scene> fog = slab_scene(medium(Curve::constant(0.05), Curve::constant(0.4), hg(0.3)), 6);
   int n = 0;
   for (const auto& [name, scene] : {std::pair{"room", room}, {"hills", hills}, {"fog", fog}}) {
@@ -141,6 +143,30 @@ TEST(LidarExtremes, FarAway) {
   EXPECT_NEAR(first / sum, 2 * 10 / kSpeedOfLight, 1e-11) << "a beam 180 m wide curves by 0.1 mm";
 }
 
+// A plate that comes up by 300 m/s: every pulse finds it where it is when light turns back.
+TEST(LidarExtremes, AMovingTarget) {
+  const double H = 1000, speed = 300;
+  auto scene = plate(0.3, 100);
+  scene->tracks.push_back({"rise", keyframe_track({{0, {{}, {}}}, {1, {{}, {0, 0, speed}}}})});
+  scene->groups[0].placements[0].track = 0;
+  DownLidar lidar(H, 3);
+  lidar.train->spacing = 0.1;
+  lidar.laser.beam.full_angle_1_e2 = 1e-5;
+  lidar.receiver.field_of_view = 1e-3;
+  lidar.gate_of(H - 100, H + 10, 1e-10);
+  const Received got = receive(scene, lidar);
+  ASSERT_EQ(got.blocks.size(), 1u);
+  for (size_t r = 0; r < 3; ++r) {
+    const ResponseRow row(got.head, got.blocks[0], r);
+    double sum = 0, first = 0;
+    for (size_t k = 0; k < row.size(); ++k)
+      sum += row.photons(k), first += row.photons(k) * arrival_of_bin(got.head, row.pulse(), row.bin(k));
+    // d = H - v (t + d / c)
+    const double d = (H - speed * 0.1 * static_cast<double>(r)) / (1 + speed / kSpeedOfLight);
+    EXPECT_NEAR(first / sum, 2 * d / kSpeedOfLight, 2e-13) << r;
+  }
+}
+
 // 10 km between them at 10 km height: both look at the same spot.
 TEST(LidarExtremes, BistaticTenKilometres) {
   const double H = 10e3, b = 5e3, R = std::hypot(H, b), tilt = std::atan2(b, H);
@@ -191,7 +217,8 @@ TEST(LidarExtremes, ACornerOfMirrorsBringsNothing) {
   const double s = 0.05;
   std::vector<Vec3> v{{0, 0, 0}, {s, 0, 0}, {0, s, 0}, {0, 0, s}};
   const auto scene = scene_of({mesh_of(v, {0, 1, 2, 0, 2, 3, 0, 3, 1}, 1), quad(100, -0.2, 0)},
-                              {material("plate", lambert(0.3)), material("mirror", {"dielectric", {}, {{"index", Curve::constant(1.5)}}, {}, nullptr})});
+                              {material("plate", lambert(0.3)),
+                               material("mirror", {"dielectric", {}, {{"index", Curve::constant(1.5)}}, {}, nullptr})});
   DownLidar lidar(1000);
   lidar.laser.beam.full_angle_1_e2 = 1e-3;
   lidar.receiver.field_of_view = 2e-3;

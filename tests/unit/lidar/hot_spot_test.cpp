@@ -13,8 +13,7 @@ constexpr double kTop = 10, kHeight = 100, kIndex = 3, kProjection = 0.5, kRefle
 std::shared_ptr<Scene> matter_of_leaves(const std::string& phase) {
   const double extinction = kProjection * kIndex / kTop, albedo = kReflectance + kTransmittance;
   ModelSpec how = hg(0);
-  if (phase == "leaves")
-    how = {"leaves", {}, {{"transmitted", Curve::constant(kTransmittance / albedo)}}, {}, nullptr};
+  if (phase == "leaves") how = {"leaves", {}, {{"transmitted", Curve::constant(kTransmittance / albedo)}}, {}, nullptr};
   auto scene = scene_of({quad(1000, 0, 0)}, {material("soil", lambert(0.2))});
   scene->materials.push_back(boundary(0));
   scene->media = {medium(Curve::constant(extinction * (1 - albedo)), Curve::constant(extinction * albedo), how)};
@@ -24,7 +23,7 @@ std::shared_ptr<Scene> matter_of_leaves(const std::string& phase) {
 }
 
 DownLidar over_leaves() {
-  DownLidar lidar(kHeight, 256);
+  DownLidar lidar(kHeight, 64);
   lidar.laser.beam.full_angle_1_e2 = 1e-3;
   lidar.receiver.field_of_view = 3e-3;
   lidar.gate_of(kHeight - kTop - 1, kHeight + 1, 1e-10);
@@ -46,12 +45,12 @@ TEST(HotSpot, GroundUnderLeavesIsSeenByTheWayIn) {
       lidar.start_from = from;
       const Received got = receive(matter_of_leaves(leaves ? "leaves" : "drops"), lidar);
       const auto seen = ground(got, lidar);
-      const double bare = 256 * lidar.photons() * 0.2 / kPi / (kHeight * kHeight) * kPi * 0.01 / 4;
+      const double bare = 64 * lidar.photons() * 0.2 / kPi / (kHeight * kHeight) * kPi * 0.01 / 4;
       const double depth = kProjection * kIndex;
       // What fills the last 2 cm comes back with it.
       const double expected = bare * std::exp(-(leaves ? 1 : 2) * depth);
       EXPECT_NEAR(seen.photons, expected, 4 * seen.error() + 0.01 * expected) << leaves;
-      EXPECT_LT(seen.error(), 0.03 * expected);
+      EXPECT_LT(seen.error(), 0.06 * expected);
     }
 }
 
@@ -68,7 +67,7 @@ TEST(HotSpot, LeavesReturnMoreThanDrops) {
     bake_phase(scene->media[0].phase, state)->eval(-1, {&back, 1});
   }
   const double depth = kProjection * kIndex, albedo = kReflectance + kTransmittance;
-  const double unit = 256 * lidar.photons() * kPi * 0.01 / 4 * albedo * back;
+  const double unit = 64 * lidar.photons() * kPi * 0.01 / 4 * albedo * back;
   // With 1 / R^2 over the canopy.
   double integral = 0;
   const int n = 10000;
@@ -79,8 +78,8 @@ TEST(HotSpot, LeavesReturnMoreThanDrops) {
   EXPECT_NEAR(all.photons - soil.photons, unit * integral, 0.01 * unit * integral);
 }
 
-// Leaves one by one: disks of 2 cm radius, lit and seen from one place. The mean over canopies of what the ground returns
-// is exp(-t) to the same accuracy, by the same visibility on both ways.
+// Leaves one by one: disks of 2 cm radius, lit and seen from one place. The mean over canopies of what the ground
+// returns is exp(-t) to the same accuracy, by the same visibility on both ways.
 TEST(HotSpot, SingleLeavesAreTheSameOnAverage) {
   RunningStats ground_return;
   for (uint64_t canopy = 0; canopy < 64; ++canopy) {
@@ -94,7 +93,8 @@ TEST(HotSpot, SingleLeavesAreTheSameOnAverage) {
     const double radius = 0.03, half = 0.3;  // the spot is 0.1 m wide, its edges are covered from all sides
     const auto leaves = static_cast<int>(kIndex * 4 * half * half / (kPi * radius * radius) + random.uniform());
     for (int i = 0; i < leaves; ++i) {
-      const Vec3 at{half * (2 * random.uniform() - 1), half * (2 * random.uniform() - 1), 0.1 + kTop * random.uniform()};
+      const Vec3 at{half * (2 * random.uniform() - 1), half * (2 * random.uniform() - 1),
+                    0.1 + kTop * random.uniform()};
       const Dir n = uniform_sphere({random.uniform(), random.uniform()});
       const Vec3 axis = cross({0, 0, 1}, n);
       const double s = length(axis);

@@ -92,9 +92,10 @@ TEST(Trace, ASphereReturnsByItsDepth) {
 TEST(Trace, AnInclinedPlateReturnsAHalfEllipse) {
   const double R = 1000, theta = 0.5e-3, slope = 45 * kDegree;
   const double half = 50, rise = half * std::tan(slope);
-  const auto scene = scene_of({mesh_of({{-half, -half, -rise}, {half, -half, rise}, {half, half, rise}, {-half, half, -rise}},
-                                       {0, 1, 2, 0, 2, 3}, 0)},
-                              {material("plate", lambert(0.3))});
+  const auto scene =
+      scene_of({mesh_of({{-half, -half, -rise}, {half, -half, rise}, {half, half, rise}, {-half, half, -rise}},
+                        {0, 1, 2, 0, 2, 3}, 0)},
+               {material("plate", lambert(0.3))});
   DownLidar lidar(R, 64);
   lidar.laser.beam.kind = BeamProfile::Kind::top_hat;
   lidar.laser.beam.half_angle = theta;
@@ -122,9 +123,10 @@ TEST(Trace, AnInclinedPlateReturnsAHalfEllipse) {
 // A Gaussian beam on a slope: sigma = 2 R tan(slope) (full angle / 4) / c: 0.83391 ns at 1 km, 0.5 mrad and 45 degrees.
 TEST(Trace, AGaussianBeamIsSpreadByASlope) {
   const double R = 1000, half = 50;
-  const auto scene = scene_of({mesh_of({{-half, -half, -half}, {half, -half, half}, {half, half, half}, {-half, half, -half}},
-                                       {0, 1, 2, 0, 2, 3}, 0)},
-                              {material("plate", lambert(0.3))});
+  const auto scene =
+      scene_of({mesh_of({{-half, -half, -half}, {half, -half, half}, {half, half, half}, {-half, half, -half}},
+                        {0, 1, 2, 0, 2, 3}, 0)},
+               {material("plate", lambert(0.3))});
   DownLidar lidar(R, 64);
   lidar.laser.beam.full_angle_1_e2 = 0.5e-3;
   lidar.receiver.field_of_view = 4e-3;
@@ -149,8 +151,8 @@ TEST(Trace, ResultsAreTheSameOnAnyNumberOfThreads) {
   lidar.receiver.field_of_view = 5e-3;
   lidar.gate_of(90, 110, 1e-9);
   lidar.paths = 4;
-  const auto scene = scene_of({quad(50, 0, 0), box({-0.1, -0.1, 0}, {0.05, 0.05, 2}, 0, true)},
-                              {material("plate", lambert(0.5))});
+  const auto scene =
+      scene_of({quad(50, 0, 0), box({-0.1, -0.1, 0}, {0.05, 0.05, 2}, 0, true)}, {material("plate", lambert(0.5))});
   const auto flat = [](const Received& r) {
     std::vector<double> all;
     for (const ResponseBlock& b : r.blocks) {
@@ -195,8 +197,7 @@ TEST(Trace, PassiveLightStandsInBinZero) {
     lidar.start_from = from;
     const Received got = receive(plate(0.4), lidar, sky);
     const double solid = 2 * kPi * (1 - std::cos(2.5e-3)), area = kPi * 0.01;
-    const double expected =
-        8 * 0.4 * 10 * solid * area * 1e-3 * 1e-9 * 1.064e-6 / (kPlanckConstant * kSpeedOfLight);
+    const double expected = 8 * 0.4 * 10 * solid * area * 1e-3 * 1e-9 * 1.064e-6 / (kPlanckConstant * kSpeedOfLight);
     EXPECT_TRUE(got.report.passive);
     const auto dark = got.bin(0);
     EXPECT_NEAR(dark.photons, expected, 4 * dark.error() + 0.01 * expected);
@@ -221,8 +222,7 @@ TEST(Trace, PosesAreThoseOfEmissionAndReception) {
   EXPECT_NEAR(pulse.reception.translation.x - pulse.emission.translation.x, moved, 1e-6);
   EXPECT_NEAR(moved, 25.017, 1e-3);
   // Against a pair that stands there: the same light.
-  EXPECT_NEAR(got.total().photons, 4 * lidar.photons() * 0.9 / kPi / (H * H) * kPi / 4,
-              2e-3 * got.total().photons);
+  EXPECT_NEAR(got.total().photons, 4 * lidar.photons() * 0.9 / kPi / (H * H) * kPi / 4, 2e-3 * got.total().photons);
 }
 
 }  // namespace
