@@ -38,7 +38,9 @@ bool LineKit::any_leaves() const {
 }
 
 bool LineKit::shines() const {
+  constexpr double kWarm = 2.5;  // um: beyond it the air glows
   if (!environment.lights.empty() || optics.any_emission()) return true;
+  if (environment.atmosphere && wavelength_um > kWarm) return true;
   const auto& materials = surface.tracer().scene().materials;
   for (uint32_t m = 0; m < materials.size(); ++m)
     if (!optics.material(m).blackbody.empty()) return true;

@@ -206,6 +206,31 @@ TEST(Trace, PassiveLightStandsInBinZero) {
   }
 }
 
+// Channels by the tag of what is met first: half of the spot lies on a roof.
+TEST(Trace, TagsHaveChannels) {
+  for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+    auto scene = scene_of(
+        {quad(100, 0, 0), mesh_of({{0, -50, 2}, {50, -50, 2}, {50, 50, 2}, {0, 50, 2}}, {0, 1, 2, 0, 2, 3}, 0)},
+        {material("plate", lambert(0.3))});
+    scene->tags = {"street", "roof"};
+    scene->groups[0].placements[0].tag = 0, scene->groups[0].placements[1].tag = 1;
+    DownLidar lidar(1000, 8);
+    lidar.laser.beam.full_angle_1_e2 = 1e-3;
+    lidar.receiver.field_of_view = 4e-3;
+    lidar.gate_of(990, 1010, 1e-9);
+    lidar.start_from = from;
+    lidar.tags = {"roof"};
+    const Received got = receive(scene, lidar);
+    ASSERT_EQ(got.head.channels, (std::vector<std::string>{"single", "multiple", "tag:roof"}));
+    const auto roof = got.total(2), all = got.total();
+    EXPECT_NEAR(roof.photons, all.photons / 2, 4 * std::hypot(roof.error(), all.error()) + 0.01 * all.photons);
+    // And it is what comes back first.
+    const double between = 2 * 999 / kSpeedOfLight;
+    const auto early = got.sum([&](uint32_t b) { return lidar.gate.start + (b - 0.5) * lidar.gate.bin < between; }, 2);
+    EXPECT_NEAR(early.photons, roof.photons, 1e-9 * roof.photons);
+  }
+}
+
 // Light is under way while the receiver moves: 7.5 km/s at 500 km are 25 m of track.
 TEST(Trace, PosesAreThoseOfEmissionAndReception) {
   const double H = 500e3;
