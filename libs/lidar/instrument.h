@@ -78,7 +78,7 @@ struct LidarInstrument {
   std::vector<std::string> tags;  // of materials with a channel of their own
   std::optional<Utc> epoch;
   // What `dirsig-render --detect` reads: pulse shape, detectors, output. Null: responses are stored only.
-  Params detection;
+  std::optional<Params> detection;
 };
 
 // What is wrong, as the end of a sentence; empty when nothing is.

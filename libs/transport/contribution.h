@@ -47,6 +47,7 @@ enum class WaterSeen : uint8_t {
 struct Contribution {
   uint32_t path = 0;                     // lane of the kernel
   uint32_t order = 0;                    // scattering events between the light and the sensor
+  uint32_t smooth = 0;                   // of them those at smooth surfaces, which only turn light
   uint16_t light = kFromMatter;          // index into Environment::lights, or kFromMatter, kFromAir
   uint8_t events = 0;                    // kinds of events on the way, a set of EventKind
   bool asked = false;                    // an explicit sample; else met by chance
@@ -55,7 +56,7 @@ struct Contribution {
   float scale = 1;                       // shares and densities (shares.h); may be negative where a sink allows it
   Factor factor;                         // stays valid while the sink runs
   const float* radiance = nullptr;  // of the light, per bin, W/(m2 sr um) (times what its density lacks); null = ones
-  double arrival = 0;               // m, optical path (index of refraction times way) from the light to the sensor
+  double arrival = 0;               // m, from the light to the sensor: way times group index of the matter around
   // Light that is known of, but did not arrive (lost_light.h): the chance that a continuation would have met it.
   // Infinite where light arrived.
   float missed = std::numeric_limits<float>::infinity();

@@ -92,7 +92,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.time = ray.ray.time;
   path.length = path.arrival = path.last_density = 0;
   path.before = 1;
-  path.surfaces = path.scatterings = path.flights = 0, path.events = 0;
+  path.surfaces = path.scatterings = path.smooth = path.flights = 0, path.events = 0;
   if (refracted_) path.claims.clear();  // else nobody makes or reads claims
   path.branch = Branch::none, path.sided = false;
   path.share = 1;
@@ -261,7 +261,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint3
   if constexpr (Surfaces::kDense > 0) contacts_.settle({{}, path.direction, path.time, path.draw}, hit, touching_);
   const bool first = is_first_surface(p);
   path.length += hit.distance;
-  path.arrival += space_.index(p) * hit.distance;
+  path.arrival += space_.delay(p) * hit.distance;
   const bool scatters = surfaces_.meet(p, hit, -path.direction, path.time, first);
   enter_node(p, hit, first);
   if (!glowing_.empty()) meet_glow(p, hit);

@@ -209,9 +209,11 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   }
   const Hit& hit = hits_[node.slot];
   path.events |= on.dirac ? by_surface | by_dirac : by_surface;
+  path.smooth += on.dirac;
   const bool passed = passes(node, on);
   if (passed) space_.cross(p, hit, surfaces_.material(p), on.in);
   path.origin = surface_.tracer().leave(hit, on.in);
+  path.arrival += space_.delay(p) * step_along(hit, on.in);
   path.direction = on.in;
   return passed;
 }

@@ -111,8 +111,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const Path& pat
   }
   if (is_behind_earth(ray, way.length)) return false;
   if (sky) return true;
-  const double index = space_.follow_way(ray, way.length, through, transmission_);
-  if (std::isfinite(way.length)) arrival += way.length * index;  // far lights shine evenly in time
+  const double delay = space_.follow_way(ray, way.length, through, transmission_);
+  if (std::isfinite(way.length)) arrival += way.length * delay;  // far lights shine evenly in time
   return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });
 }
 
@@ -193,6 +193,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind(const Ref
     c.beam = q.beam;
     c.water = water;
     c.order += static_cast<uint32_t>(way.events) + reached.scatterings;
+    c.smooth += static_cast<uint32_t>(way.events);
     c.scale = static_cast<float>(from_light->scale * way.spreading * way.trials * reached.scale);
     c.factor = {1, reached.through.data()};
     c.radiance = from_light->spectrum;
