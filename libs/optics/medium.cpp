@@ -33,10 +33,21 @@ std::vector<float> sample(const Medium& m, const Curve& curve, const SpectralSta
 
 }  // namespace
 
+double group_index(const Curve& index, double wavelength_um) {
+  constexpr double kStep = 0.01;
+  const double n = index.at(wavelength_um);
+  if (index.is_constant()) return n;
+  double low = wavelength_um * (1 - kStep), high = wavelength_um * (1 + kStep);
+  if (index.outside() == Outside::error) low = std::max(low, index.low_um()), high = std::min(high, index.high_um());
+  if (!(high > low)) return n;
+  return n - wavelength_um * (index.at(high) - index.at(low)) / (high - low);
+}
+
 BakedMedium::BakedMedium(const Medium& m, const SpectralState& state)
     : absorption(sample(m, m.absorption, state)),
       scattering(sample(m, m.scattering, state)),
-      index_squared(sample(m, m.index, state)) {
+      index_squared(sample(m, m.index, state)),
+      group_index(suite::group_index(m.index, state.bins[state.reference_bin()].center_um())) {
   for (float& n : index_squared) n *= n;
   if (std::any_of(scattering.begin(), scattering.end(), [](float s) { return s > 0; }))
     phase = bake_phase(m.phase, state);

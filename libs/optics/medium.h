@@ -27,6 +27,10 @@ struct Medium {
 // isotropic scattering when none is named), a sane temperature. Error located at `where` otherwise.
 void check_medium(Medium& medium, const Where& where = {});
 
+// n - wavelength dn/dwavelength of an index of refraction, the slope taken over 2 % of the wavelength, as far as the curve
+// reaches: what pulses are delayed by. Based on: M. Born & E. Wolf, "Principles of optics", section 1.3.4.
+double group_index(const Curve& index, double wavelength_um);
+
 // Per bin of a state. Error when a curve does not cover the state.
 struct BakedMedium {
   BakedMedium(const Medium& medium, const SpectralState& state);
@@ -35,6 +39,7 @@ struct BakedMedium {
               std::unique_ptr<const PhaseFunction> phase);
   std::vector<float> absorption, scattering;  // 1/m at density 1
   std::vector<float> index_squared;
+  double group_index = 1;  // at the state's reference: light takes so much longer than in empty space
   std::vector<float>
       blackbody;  // n^2 B(T), W/(m2 sr um); empty = does not emit at its own temperature, or below 1e-12 everywhere
   std::unique_ptr<const PhaseFunction> phase;  // null when nothing scatters

@@ -55,7 +55,7 @@ struct Contribution {
   float scale = 1;                       // shares and densities (shares.h); may be negative where a sink allows it
   Factor factor;                         // stays valid while the sink runs
   const float* radiance = nullptr;  // of the light, per bin, W/(m2 sr um) (times what its density lacks); null = ones
-  double arrival = 0;               // m, optical path (index of refraction times way) from the light to the sensor
+  double arrival = 0;               // m, from the light to the sensor: way times group index of the matter around
   // Light that is known of, but did not arrive (lost_light.h): the chance that a continuation would have met it.
   // Infinite where light arrived.
   float missed = std::numeric_limits<float>::infinity();

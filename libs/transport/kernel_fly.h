@@ -260,7 +260,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint3
   if constexpr (Surfaces::kDense > 0) contacts_.settle({{}, path.direction, path.time, path.draw}, hit, touching_);
   const bool first = is_first_surface(p);
   path.length += hit.distance;
-  path.arrival += space_.index(p) * hit.distance;
+  path.arrival += space_.delay(p) * hit.distance;
   const bool scatters = surfaces_.meet(p, hit, -path.direction, path.time, first);
   enter_node(p, hit, first);
   if (!glowing_.empty()) meet_glow(p, hit);

@@ -212,6 +212,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const bool passed = passes(node, on);
   if (passed) space_.cross(p, hit, surfaces_.material(p), on.in);
   path.origin = surface_.tracer().leave(hit, on.in);
+  path.arrival += space_.delay(p) * step_along(hit, on.in);
   path.direction = on.in;
   return passed;
 }

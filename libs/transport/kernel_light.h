@@ -222,7 +222,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   c.factor = factor;
   c.radiance = radiance;
   c.missed = static_cast<float>(missed);
-  if (distance < std::numeric_limits<double>::infinity()) c.arrival += space_.optical_way(p, i, distance);
+  if (distance < std::numeric_limits<double>::infinity()) {
+    // From the surface itself: the ray starts some float places off it.
+    const double off = node.event ? 0 : step_along(hits_[node.slot], q.direction);
+    c.arrival += space_.optical_way(p, i, distance + off);
+  }
   contribute();
 }
 

@@ -111,8 +111,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const Path& pat
   }
   if (is_behind_earth(ray, way.length)) return false;
   if (sky) return true;
-  const double index = space_.follow_way(ray, way.length, through, transmission_);
-  if (std::isfinite(way.length)) arrival += way.length * index;  // far lights shine evenly in time
+  const double delay = space_.follow_way(ray, way.length, through, transmission_);
+  if (std::isfinite(way.length)) arrival += way.length * delay;  // far lights shine evenly in time
   return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });
 }
 

@@ -32,7 +32,7 @@ struct Lane {
   double time = 0;            // s
   std::array<double, 4> u;    // numbers of the current node
   double length = 0;          // m so far
-  double arrival = 0;         // m so far, times the index of refraction
+  double arrival = 0;         // m so far, times the group index
   HeroDensities<K> relative;  // r_k (shares.h)
   double throughput[K];       // at the knots, for roulette
   double before = 1;          // A before the last event over A after it

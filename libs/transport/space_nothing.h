@@ -67,6 +67,8 @@ class NothingSpace {
     return lane.origin;
   }
   double index(uint32_t p) const { return clear_ ? clear_->index(p) : 1; }
+  // Group index, by which light is late.
+  double delay(uint32_t p) const { return clear_ ? clear_->delay(p) : 1; }
   // What path p sees a surface emit into empty space, made that of one in the matter that fills space there. Per bin.
   void emit_within(uint32_t p, std::span<float> emission) const {
     if (clear_) clear_->emit_within(p, emission);
@@ -84,15 +86,15 @@ class NothingSpace {
   // What lies on the way of ray i of the last sight(), of SightRays, leaves of its light: false = all of it. reach: the
   // same of scattering alone at the knots, the share of continuations that would get as far.
   bool dims(const Ray&, double, size_t, std::span<float>, std::span<double>) { return false; }
-  // m, index of refraction times way, along ray i.
-  double optical_way(uint32_t p, size_t, double distance) const { return index(p) * distance; }
+  // m, group index times way, along ray i.
+  double optical_way(uint32_t p, size_t, double distance) const { return delay(p) * distance; }
   // Along a way that interfaces bend (kernel_refract.h): it leaves the event, or the surface at `hit` towards `in`,
   void begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in) {
     if (clear_) clear_->begin_way(p, !event && dot(in, hit.normal) * dot(out, hit.normal) < 0, hit, material, in);
   }
-  // runs `length` m straight on, which multiplies `through`; the index of refraction there. scratch: per bin.
+  // runs `length` m straight on, which multiplies `through`; the group index there. scratch: per bin.
   double follow_way(const Ray&, double, std::span<float>, std::span<float>) {
-    return clear_ ? clear_->index_on_way() : 1;
+    return clear_ ? clear_->delay_on_way() : 1;
   }
   // and passes a surface.
   void cross_way(const Hit& hit, uint32_t material, Dir in) {
@@ -152,7 +154,7 @@ class AirSpace : public NothingSpace {
     return true;
   }
   double follow_way(const Ray& ray, double length, std::span<float> through, std::span<float> scratch) {
-    if (clear_ && clear_->on_way()) return clear_->index_on_way();
+    if (clear_ && clear_->on_way()) return clear_->delay_on_way();
     air_.transmittance(ray.origin, ray.direction, length, scratch);
     for (size_t i = 0; i < through.size(); ++i) through[i] *= scratch[i];
     return 1;

@@ -11,8 +11,10 @@ std::unique_ptr<ClearMatter> ClearMatter::of(const Surface& surface, const Optic
 
 ClearMatter::ClearMatter(const Surface& surface, const Optics& optics, size_t width)
     : optics_(optics), bodies_(surface), stacks_(width), remembered_(width) {
-  for (const BakedMedium& m : optics.clear())
+  for (const BakedMedium& m : optics.clear()) {
     index_.push_back(std::sqrt(double{m.index_squared[optics.state().knots[0]]}));
+    delay_.push_back(m.group_index);
+  }
 }
 
 void ClearMatter::start(uint32_t p, Vec3 origin, double time) {

@@ -24,7 +24,8 @@ class ClearMatter {
     bodies_.transmit(stacks_[p], hit, material, in, statistics_);
   }
   bool around(uint32_t p) const { return stacks_[p].medium(kNone) != kNone; }
-  double index(uint32_t p) const { return index_of(stacks_[p]); }
+  double index(uint32_t p) const { return of(index_, stacks_[p]); }
+  double delay(uint32_t p) const { return of(delay_, stacks_[p]); }  // group index
   void emit_within(uint32_t p, std::span<float> emission) const;
 
   // Keeps what is around path p, and puts it there again.
@@ -35,17 +36,17 @@ class ClearMatter {
   void begin_way(uint32_t p, bool passes, const Hit& hit, uint32_t material, Dir in);
   void cross_way(const Hit& hit, uint32_t material, Dir in) { bodies_.transmit(way_, hit, material, in, statistics_); }
   bool on_way() const { return way_.medium(kNone) != kNone; }
-  double index_on_way() const { return index_of(way_); }
+  double delay_on_way() const { return of(delay_, way_); }
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
-  double index_of(const MediumStack& stack) const {
+  static double of(const std::vector<double>& values, const MediumStack& stack) {
     const uint32_t medium = stack.medium(kNone);
-    return medium == kNone ? 1 : index_[medium];
+    return medium == kNone ? 1 : values[medium];
   }
   const Optics& optics_;
   Bodies bodies_;
-  std::vector<double> index_;  // at the reference
+  std::vector<double> index_, delay_;  // at the reference
   std::vector<MediumStack> stacks_, remembered_;
   MediumStack way_;
   TraceStatistics statistics_;

@@ -31,6 +31,7 @@ FieldSpace::FieldSpace(const SpaceContext& c)
   for (const BakedMedium& m : c.optics.media()) {
     const size_t reference = c.optics.state().knots[0];
     index_.push_back(std::sqrt(double{m.index_squared[reference]}));
+    delay_.push_back(m.group_index);
     if (m.scatters()) m.phase->asymmetry(phase_);
     asymmetry_.push_back(m.scatters() ? double{phase_[reference]} : 0);
     one_phase_.push_back(m.scatters() && m.phase->spectrally_uniform());
@@ -67,7 +68,7 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   live.sided = live.sided && flown.scattered;
   const auto advance = [&](double distance) {
     live.length += distance;
-    live.arrival += index_of(medium) * distance;
+    live.arrival += delay_of(medium) * distance;
   };
   if (flown.scattered) {
     advance(flown.distance);

@@ -32,6 +32,7 @@ class FieldSpace {
   Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool ends,
              std::span<float> through, std::span<float> emitted);
   double index(uint32_t p) const { return index_of(stacks_[p].medium(ambient_)); }
+  double delay(uint32_t p) const { return delay_of(stacks_[p].medium(ambient_)); }
   // Times the squared index (Planck's law in matter, as of the media themselves).
   void emit_within(uint32_t p, std::span<float> emission) const;
   // Flights bring all light of the air: media on the way dim it in parts.
@@ -98,7 +99,7 @@ class FieldSpace {
   Sight& sight() { return sight_; }
   bool dims(const Ray& ray, double distance, size_t i, std::span<float> transmission, std::span<double> reach);
   // Along ray i, with the index where it starts: boundaries that do not bend it part media of one index.
-  double optical_way(uint32_t p, size_t, double distance) const { return index(p) * distance; }
+  double optical_way(uint32_t p, size_t, double distance) const { return delay(p) * distance; }
   void begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in);
   double follow_way(const Ray& ray, double length, std::span<float> through, std::span<float> scratch);
   // How far a ray from where the way has come to runs, boundaries passed, to a surface: infinity where it meets none in
@@ -150,6 +151,7 @@ class FieldSpace {
   // Matter that is denser than the air, such as water, holds none of it.
   bool is_airless(uint32_t medium) const { return index_of(medium) != 1; }
   double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }
+  double delay_of(uint32_t medium) const { return medium == kNone || delay_.empty() ? 1 : delay_[medium]; }
 
   const Surface& surface_;
   const Optics& optics_;
@@ -162,6 +164,7 @@ class FieldSpace {
   Flights flights_;
   MediaSight sight_;
   std::vector<double> index_;       // of refraction at the reference, per medium
+  std::vector<double> delay_;       // group index there
   std::vector<double> asymmetry_;   // mean cosine of scattering there
   std::vector<uint8_t> one_phase_;  // the same phase function at all wavelengths, per medium
   std::vector<MediumStack> stacks_;

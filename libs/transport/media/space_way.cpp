@@ -108,7 +108,7 @@ uint32_t FieldSpace::stand_on_way() {
 }
 
 double FieldSpace::follow_way(const Ray& from, double length, std::span<float> through, std::span<float> scratch) {
-  const double index = index_of(way_.medium(ambient_));
+  const double delay = delay_of(way_.medium(ambient_));
   const bool airless = is_airless(way_.medium(ambient_));
   depths_.assign(optics_.media().size(), 0);
   run(way_, from, length, false,
@@ -118,7 +118,7 @@ double FieldSpace::follow_way(const Ray& from, double length, std::span<float> t
   };
   if (flights_.transmittance(depths_, scratch)) weaken();
   if (air_ && !airless) air_->transmittance(from.origin, from.direction, length, scratch), weaken();
-  return index;
+  return delay;
 }
 
 }  // namespace suite

@@ -1,0 +1,58 @@
+// The two ends of a lidar's paths as lights of the path kernel: whichever a path does not begin at is asked for at every
+// node. Both are points that nothing meets by chance, stand where the pulse of the ray's time has them, and are found
+// through smooth interfaces like lamps (LightNature::placed).
+//   LaserEnd      scale = density of the beam, 1/sr, over the squared distance: irradiance of a unit energy
+//   ReceiverEnd   scale = importance, m2, over the squared distance. Of a path that leaves the laser with a unit energy
+//                 that is the energy on the focal plane, by reciprocity; which pixel's tells the spectrum (pixel_of)
+// Based on: E. Veach, "Robust Monte Carlo methods for light transport simulation", 1997, chapter 4 (importance).
+#pragma once
+#include <vector>
+
+#include "lidar/laser_beam.h"
+#include "lidar/field.h"
+#include "lidar/pulse_at_work.h"
+#include "light/light.h"
+
+namespace suite {
+
+class LidarEnd : public Light {
+ public:
+  std::optional<LightSample> sample_member(size_t, double probability, const LightReceiver& at,
+                                           const std::array<double, 4>& u, double time) const override;
+  std::optional<LightPlace> draw_place(const LightReceiver& at, const std::array<double, 4>& u,
+                                       double time) const override;
+
+ protected:
+  explicit LidarEnd(const PulsesAtWork& pulses);
+  virtual Vec3 place(const PulseAtWork& pulse) const = 0;
+  const PulsesAtWork& pulses_;
+};
+
+class LaserEnd final : public LidarEnd {
+ public:
+  // Keeps references. bins: of the state.
+  LaserEnd(const LaserBeam& beam, const PulsesAtWork& pulses, size_t bins);
+  std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
+                                    double time) const override;
+
+ private:
+  Vec3 place(const PulseAtWork& pulse) const override { return pulse.laser.translation; }
+  const LaserBeam& beam_;
+  std::vector<float> ones_;
+};
+
+class ReceiverEnd final : public LidarEnd {
+ public:
+  ReceiverEnd(const ReceiverField& field, const PulsesAtWork& pulses, size_t bins);
+  std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
+                                    double time) const override;
+  size_t pixel_of(const float* spectrum) const { return static_cast<size_t>(spectrum - ones_.data()) / bins_; }
+
+ private:
+  Vec3 place(const PulseAtWork& pulse) const override { return pulse.receiver.translation; }
+  const ReceiverField& field_;
+  size_t bins_;
+  std::vector<float> ones_;  // [pixel][bin]
+};
+
+}  // namespace suite

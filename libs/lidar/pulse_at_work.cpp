@@ -1,0 +1,50 @@
+#include "lidar/pulse_at_work.h"
+
+#include <cmath>
+
+#include "spectral/planck.h"
+
+namespace suite {
+
+std::optional<PulseAtWork> begin_pulse(const LidarInstrument& instrument, uint64_t number, const Tracer& tracer,
+                                       TraceStatistics& statistics) {
+  constexpr int kRounds = 8;
+  constexpr double kSettled = 1e-13;  // s: 30 um of way
+  double round_trip = 0;
+  std::optional<PulseAtWork> found;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto pulse = instrument.pulses->pulse(number, round_trip);
+    if (!pulse) return std::nullopt;
+    PulseAtWork p;
+    p.number = number, p.pulse = *pulse;
+    p.laser = pulse->emission * instrument.laser.offset;
+    p.receiver = pulse->reception * instrument.receiver.offset;
+    const Dir axis = p.laser.vector({0, 0, -1});
+    p.time = pulse->time + round_trip / 2;
+    const Ray ray{p.laser.translation, axis, p.time};
+    Hit hit;
+    tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+    const RangeGate& gate = instrument.gate;
+    p.range = hit.hit() ? hit.distance : kSpeedOfLight * (pulse->start + (gate.stop - gate.start) / 2) / 2;
+    const double way = p.range + length(p.laser.translation + axis * p.range - p.receiver.translation);
+    found = p;
+    const double before = round_trip;
+    round_trip = way / kSpeedOfLight;
+    if (round > 0 && std::fabs(round_trip - before) <= kSettled) break;
+  }
+  return found;
+}
+
+void PulsesAtWork::add(PulseAtWork pulse) {
+  while (of(pulse.time)) pulse.time = std::nextafter(pulse.time, INFINITY);
+  pulses_.push_back(std::move(pulse));
+}
+
+const PulseAtWork* PulsesAtWork::of(double time) const {
+  if (last_ < pulses_.size() && pulses_[last_].time == time) return &pulses_[last_];
+  for (size_t i = 0; i < pulses_.size(); ++i)
+    if (pulses_[i].time == time) return &pulses_[last_ = i];
+  return nullptr;
+}
+
+}  // namespace suite

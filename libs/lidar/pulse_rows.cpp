@@ -1,0 +1,170 @@
+#include "lidar/pulse_rows.h"
+
+#include <algorithm>
+
+#include "base/interrupt.h"
+#include "spectral/planck.h"
+#include "transport/dimensions.h"
+#include "transport/serve.h"
+
+namespace suite {
+
+namespace {
+constexpr size_t kWave = 64;  // paths
+}
+
+struct PulseRows::Job {
+  Environment environment;
+  PipelineOptions options;
+  KernelContext context;
+  uint16_t end;
+  RangeSink sink;
+  SpectralThroughputs throughputs;
+  std::unique_ptr<PathTracing> kernel;
+  bool passive, active;
+  uint32_t waiting = 0;  // started paths
+
+  Job(const LineKit& kit, Environment lit, const PipelineOptions& method, uint16_t end_, const ReceiverEnd* receiver,
+      uint32_t orders, bool tags, bool passive_, bool active_)
+      : environment(std::move(lit)),
+        options(method),
+        context{kit.surface, kit.optics, environment, options, tags},
+        end(end_),
+        sink(kWave, end, receiver, orders),
+        throughputs(kWave, kit.optics.state().size(), 1),
+        kernel(make_kernel(choose_kernel(context), context, kWave, throughputs, sink)),
+        passive(passive_),
+        active(active_) {}
+
+  void finish(const Tracer& tracer, PulseReport& report) {
+    TraceStatistics statistics;
+    complete(*kernel, tracer, statistics);
+    for (uint32_t p = 0; p < waiting; ++p) report.truncated += kernel->record(p).truncated;
+    report.paths += waiting;
+    waiting = 0;
+  }
+};
+
+PulseRows::PulseRows(const TracePlan& plan, const LineKit& kit)
+    : plan_(plan),
+      kit_(kit),
+      directions_(plan.beam, plan.field, kSpeedOfLight * plan.instrument.gate.start / 2,
+                  kSpeedOfLight * plan.instrument.gate.stop / 2,
+                  plan.instrument.orders == 1 && !kit.shines() ? FirstDirection::InField::spared
+                                                               : FirstDirection::InField::needed) {
+  const size_t bins = kit.optics.state().size();
+  SUITE_CHECK_EQ(bins, size_t{1});
+  if (!plan.laser_first) {
+    active_ = make_job(std::make_shared<LaserEnd>(plan.beam, pulses_, bins), nullptr, kit.shines());
+    return;
+  }
+  auto receiver = std::make_shared<ReceiverEnd>(plan.field, pulses_, bins);
+  const ReceiverEnd* const seen = receiver.get();
+  active_ = make_job(std::move(receiver), seen, false);
+  if (kit.shines()) passive_ = make_job(nullptr, nullptr, true);
+}
+
+PulseRows::~PulseRows() = default;
+
+// end: null = passive light alone.
+auto PulseRows::make_job(std::shared_ptr<const Light> end, const ReceiverEnd* receiver, bool passive)
+    -> std::unique_ptr<Job> {
+  Environment lit = kit_.environment;
+  if (!passive) lit.lights.clear(), lit.specs.clear(), lit.sun = kNoLight;
+  const auto index = static_cast<uint16_t>(lit.lights.size());
+  const bool active = end != nullptr;
+  if (active) lit.lights.push_back(std::move(end)), lit.specs.emplace_back();
+  PipelineOptions method = plan_.options.method;
+  method.seed = plan_.options.seed;
+  method.gloss_photons = 0;
+  if (!passive) {  // passive light has no last order
+    method.max_nodes = static_cast<int>(std::min<uint32_t>(plan_.instrument.orders, 1u << 20));
+    method.max_scatterings = plan_.instrument.orders;
+  }
+  const bool tags = !plan_.channel_of_object.empty();
+  auto job = std::make_unique<Job>(kit_, std::move(lit), method, active ? index : uint16_t{0xfffd}, receiver,
+                                   plan_.instrument.orders, tags, passive, active);
+  if (tags) job->sink.tell_apart(plan_.channel_of_object, *job->kernel);
+  return job;
+}
+
+SensorRay PulseRows::from_receiver(Job& job, const PulseAtWork& pulse, size_t pixel, const std::array<double, 4>& u,
+                                   RangeSink::Lane& lane) const {
+  // Passive light needs the whole field; alone it is spread evenly over it.
+  FirstDirection::Drawn drawn;
+  if (job.active) {
+    drawn = directions_.draw(pulse, pixel, u);
+  } else {
+    const Dir local = plan_.field.sample(pixel, {u[0], u[1]});
+    drawn.direction = pulse.receiver.vector(local);
+    if (const auto seen = plan_.field.at(local); seen && seen->pixel == pixel)
+      drawn.importance = seen->importance / plan_.field.density(local);
+  }
+  const double photons = drawn.importance * kit_.photons_of_joule;
+  lane.active = job.active ? photons * pulse.pulse.energy : 0;
+  lane.passive = job.passive ? photons * plan_.instrument.receiver.filter_um * plan_.instrument.gate.bin : 0;
+  return {{pulse.receiver.translation, drawn.direction, pulse.time}, 1};
+}
+
+SensorRay PulseRows::from_laser(const PulseAtWork& pulse, const SampleStream& stream, uint32_t sample,
+                                const std::array<double, 4>& u) const {
+  const std::array<double, 4> more = stream.draw(sample, dimensions::kSensorMore.first);
+  const LaserBeam::Start start = plan_.beam.start({u[0], u[1]}, {more[0], more[1]});
+  return {{pulse.laser.point(start.place), pulse.laser.vector(start.direction), pulse.time}, 1};
+}
+
+// Scramble s of n paths has those that are left over by one each from the first on.
+void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseReport& report) {
+  const size_t pixels = range.last_pixel - range.first_pixel;
+  const uint64_t paths = from_laser ? plan_.paths() : plan_.instrument.paths;
+  const auto scrambles = static_cast<uint64_t>(plan_.scrambles);
+  for (size_t k = 0; k < pulses_.size(); ++k) {
+    const PulseAtWork& pulse = pulses_[k];
+    for (size_t pixel = range.first_pixel; pixel < (from_laser ? range.first_pixel + 1 : range.last_pixel); ++pixel) {
+      const uint64_t key = SampleStream::problem_key(plan_.options.seed, plan_.instrument_key,
+                                                     hash_of(pulse.number, pixel, job.active));
+      RangeBins* const row = &rows_[k * pixels + pixel - range.first_pixel];
+      for (uint64_t s = 0; s < scrambles; ++s) {
+        const SampleStream stream(key, static_cast<uint32_t>(s));
+        const auto count = static_cast<uint32_t>(paths / scrambles + (s < paths % scrambles));
+        for (uint32_t sample = 0; sample < count; ++sample) {
+          const std::array<double, 4> u = stream.draw(sample, dimensions::kSensor.first);
+          RangeSink::Lane lane{row, static_cast<int>(s), pulse.pulse.energy * kit_.photons_of_joule, 0};
+          const SensorRay ray = from_laser ? this->from_laser(pulse, stream, sample, u)
+                                           : from_receiver(job, pulse, pixel, u, lane);
+          lane.active /= count, lane.passive /= count;
+          row->add_paths(job.active ? 1 : 0);
+          if (lane.active == 0 && lane.passive == 0) continue;
+          const uint32_t p = job.waiting++;
+          job.sink.begin(p, lane);
+          job.throughputs.begin(p, 1, nullptr);
+          job.kernel->start(p, ray, stream, sample);
+          if (job.waiting == kWave) job.finish(plan_.tracer, report);
+        }
+      }
+    }
+  }
+  if (job.waiting > 0) job.finish(plan_.tracer, report);
+}
+
+void PulseRows::trace(const RowRange& range, ResponseBlock& block, PulseReport& report) {
+  const FlushDenormals flush;
+  const AtWork at_work(plan_.tracer);
+  pulses_.clear(), rows_.clear();
+  for (const PulseAtWork& pulse : range.pulses) {
+    pulses_.add(pulse);
+    for (size_t pixel = range.first_pixel; pixel < range.last_pixel; ++pixel)
+      rows_.emplace_back(plan_.head, pulse.pulse.start, plan_.scrambles);
+  }
+  const uint64_t failed = active_->sink.failures() + (passive_ ? passive_->sink.failures() : 0);
+  run(*active_, range, plan_.laser_first, report);
+  if (passive_) run(*passive_, range, false, report);
+  report.failures += active_->sink.failures() + (passive_ ? passive_->sink.failures() : 0) - failed;
+  for (RangeBins& row : rows_) {
+    report.outside += row.outside();
+    row.end_row(block);
+  }
+  report.rows += rows_.size();
+}
+
+}  // namespace suite

@@ -1,0 +1,60 @@
+// Traces the rows of a few pulses: the working memory of one thread, with its kernels.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "lidar/first_direction.h"
+#include "lidar/line_kit.h"
+#include "lidar/range_sink.h"
+#include "lidar/trace.h"
+
+namespace suite {
+
+// What does not change from pulse to pulse. Everything referred to outlives those who use it.
+struct TracePlan {
+  const Tracer& tracer;
+  const LidarInstrument& instrument;
+  const TraceOptions& options;
+  const ResponseHead& head;
+  LaserBeam beam;
+  ReceiverField field;
+  bool laser_first;
+  std::vector<size_t> channel_of_object;  // empty: there are no channels of tags
+  uint64_t instrument_key;                // of random numbers
+  int scrambles;
+  // Paths of a row: of a pixel, or of a pulse where they leave the laser.
+  uint64_t paths() const { return uint64_t{instrument.paths} * (laser_first ? field.pixels() : 1); }
+};
+
+// Pulses [0, pulses) times pixels [first_pixel, last_pixel).
+struct RowRange {
+  std::span<const PulseAtWork> pulses;
+  size_t first_pixel, last_pixel;
+};
+
+class PulseRows {
+ public:
+  // kit: of the pulses' line.
+  PulseRows(const TracePlan& plan, const LineKit& kit);
+  ~PulseRows();
+  const LineKit& kit() const { return kit_; }
+  // Adds the rows of a range to a block, without its pulses, and what was done to the report.
+  void trace(const RowRange& range, ResponseBlock& block, PulseReport& report);
+
+ private:
+  struct Job;  // one kernel and what it needs
+  std::unique_ptr<Job> make_job(std::shared_ptr<const Light> end, const ReceiverEnd* receiver, bool passive);
+  void run(Job& job, const RowRange& range, bool from_laser, PulseReport& report);
+  SensorRay from_receiver(Job& job, const PulseAtWork& pulse, size_t pixel, const std::array<double, 4>& u,
+                          RangeSink::Lane& lane) const;
+  SensorRay from_laser(const PulseAtWork& pulse, const SampleStream& stream, uint32_t sample,
+                       const std::array<double, 4>& u) const;
+  const TracePlan& plan_;
+  const LineKit& kit_;
+  PulsesAtWork pulses_;
+  FirstDirection directions_;
+  std::vector<RangeBins> rows_;
+  std::unique_ptr<Job> active_, passive_;  // passive: where paths leave the laser and anything shines
+};
+
+}  // namespace suite

@@ -1,0 +1,43 @@
+// Sums contributions of the path kernel to range bins: photons by their arrival, for states of one bin.
+#pragma once
+#include <vector>
+
+#include "detection/range_bins.h"
+#include "lidar/ends.h"
+#include "transport/path_tracing.h"
+
+namespace suite {
+
+class RangeSink final : public Sink<SpectralThroughputs> {
+ public:
+  // Of a path that starts.
+  struct Lane {
+    RangeBins* rows = nullptr;  // its row, or those of all pixels where paths leave the laser
+    int scramble = 0;
+    double active = 0, passive = 0;  // photons of radiance 1 in them; 0: not asked for
+  };
+  // end: the index of the lidar's light in the environment; receiver: null where paths leave it. orders: at most.
+  RangeSink(size_t width, uint16_t end, const ReceiverEnd* receiver, uint32_t orders)
+      : lanes_(width), end_(end), receiver_(receiver), orders_(orders) {}
+  // channel_of: of the object that a path has met first (FirstMeeting::object); empty: there are no such channels.
+  // kernel: whose sink this is.
+  void tell_apart(std::vector<size_t> channel_of_object, PathTracing& kernel) {
+    channel_of_object_ = std::move(channel_of_object), kernel_ = &kernel;
+  }
+  void begin(uint32_t p, const Lane& lane) { lanes_[p] = lane; }
+  uint64_t failures() const { return failures_; }
+
+  void add(std::span<const Contribution> stage, SpectralThroughputs& throughputs) override;
+
+ private:
+  size_t tag(uint32_t p) const;
+  std::vector<Lane> lanes_;
+  uint16_t end_;
+  const ReceiverEnd* receiver_;
+  uint32_t orders_;
+  std::vector<size_t> channel_of_object_;
+  PathTracing* kernel_ = nullptr;
+  uint64_t failures_ = 0;
+};
+
+}  // namespace suite

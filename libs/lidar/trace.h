@@ -1,0 +1,56 @@
+// Traces the pulses of a laser radar through a scene and leaves their impulse responses: photons on the focal plane by
+// their arrival, for each pulse and pixel.
+//
+// Both ends of a path can be its beginning. Receiver first: paths leave the receiver, and every node asks the laser.
+// Laser first: paths leave the laser, and every node asks the receiver. Both are the same kernel (libs/transport) over
+// two delta lights (ends.h) and estimate the same light; what is narrower should begin (StartFrom::automatic).
+// Passive light (sun, sky, lamps, what is warm) comes by paths that begin at the receiver and stands in bin 0.
+//
+// Arrival is the optical path with the group index of the matter on it, where that is known, else its phase index; the
+// air counts as vacuum, in arrivals and in ResponseHead::group_index alike.
+// Assumes: reciprocal surfaces; an aperture and a laser that are points but for the beam's waist; spectra alone, no
+// polarisation; the scene stands still from the emission to the reception of a pulse.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "base/progress.h"
+#include "detection/response.h"
+#include "lidar/instrument.h"
+#include "light/environment.h"
+#include "transport/options.h"
+
+namespace suite {
+
+// Threads are those of base/parallel.h; results do not depend on their number.
+struct TraceOptions {
+  uint64_t first = 0, count = UINT64_MAX;  // pulses of the train; what lies beyond its end is left out
+  uint64_t seed = 1;
+  uint32_t scrambles = 16;  // independent parts of a row's paths, 2..64, for standard errors; at most one a path
+  // Of the kernel; nodes and scatterings follow from LidarInstrument::orders, the seed from above.
+  PipelineOptions method = {};
+  Progress* progress = nullptr;  // counts pulses; null = none
+};
+
+// What has been traced, for logs.
+struct PulseReport {
+  uint64_t pulses = 0, rows = 0, paths = 0;
+  uint64_t dark = 0;         // numbers of the train at which no beam leaves; they are in no block
+  uint64_t failures = 0;     // contributions that were no number
+  double photons = 0;        // of all pulses and pixels, within the gate
+  double outside = 0;        // and outside of it
+  double truncated = 0;      // share of the light that was cut at the last order, at most
+  bool laser_first = false;  // where paths began
+  bool passive = false;      // there is light in bin 0
+};
+
+// What the blocks of an instrument belong to. scene: for its origin.
+ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument);
+
+// Traces pulses and hands their blocks to the sink in the order of the train. A stop signal ends it between blocks by
+// Stopped (base/interrupt.h); what was handed over stays. Error: an instrument with a fault (fault_of), a scene or
+// sources that cannot be baked for the laser's wavelength, motions that do not cover the pulses.
+PulseReport trace_pulses(const std::shared_ptr<const Scene>& scene, const SourceSpecs& passive,
+                         const LidarInstrument& instrument, const TraceOptions& options, ResponseSink& sink);
+
+}  // namespace suite
