@@ -81,6 +81,7 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
   cli.flag("--list-detectors", o.list_detectors, "print the kinds of detectors of --detect and stop");
+  cli.flag("--list-deflectors", o.list_deflectors, "print the kinds of scanners of laser radars and stop");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
   cli.flag("--list-diagnostics", o.list_diagnostics, "print the code, condition and cure of every diagnostic and stop");

@@ -23,7 +23,8 @@ struct RenderOptions {
   long long seed = -1, more = -1;
   bool state = false, resume = false, load_all = false, heat_only = false, strict = false;
   bool dry_run = false, air = false, list_sensors = false, list_sources = false, list_models = false,
-       list_truth = false, list_channels = false, list_detectors = false, list_diagnostics = false;
+       list_truth = false, list_channels = false, list_detectors = false, list_deflectors = false,
+       list_diagnostics = false;
   std::vector<std::string> mute;  // codes of diagnostics that are not printed
 };
 

@@ -55,19 +55,38 @@ double ClockedTrain::interval() const {
   return least;
 }
 
+TimeSpan ClockedTrain::span() const {
+  const PulseClock& c = spec_.clock;
+  const PulseClock::Task& last = c.tasks.back();
+  return {c.tasks.front().begin, last.begin + shot_time(last.shots * c.burst * channels_.size() - 1).since};
+}
+
+ClockedTrain::Shot ClockedTrain::shot_time(uint64_t in_task) const {
+  const PulseClock& c = spec_.clock;
+  const size_t channel = channels_[in_task % channels_.size()];
+  const uint64_t shot = in_task / channels_.size();
+  // Ticks are counted from the task's start, so that times keep their digits.
+  return {channel, static_cast<double>(shot / c.burst) / c.rate +
+                       (c.burst > 1 ? static_cast<double>(shot % c.burst) / c.burst_rate : 0) +
+                       spec_.deflector->delay(channel)};
+}
+
+uint64_t ClockedTrain::lit() const {
+  uint64_t n = 0;
+  for (const PulseClock::Task& task : spec_.clock.tasks)
+    for (uint64_t k = 0; k < task.shots * spec_.clock.burst * channels_.size(); ++k) {
+      const Shot shot = shot_time(k);
+      n += spec_.deflector->direction(shot.since, shot.channel).has_value();
+    }
+  return n;
+}
+
 std::optional<ResponsePulse> ClockedTrain::pulse(uint64_t i, double round_trip) const {
   const size_t task = static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), i) - first_.begin()) - 1;
-  const PulseClock& clock = spec_.clock;
-  uint64_t rest = i - first_[task];
-  const size_t channel = channels_[rest % channels_.size()];
-  rest /= channels_.size();
-  // Ticks are counted from the task's start, so that times keep their digits.
-  const double since = static_cast<double>(rest / clock.burst) / clock.rate +
-                       (clock.burst > 1 ? static_cast<double>(rest % clock.burst) / clock.burst_rate : 0) +
-                       spec_.deflector->delay(channel);
+  const auto [channel, since] = shot_time(i - first_[task]);
   const std::optional<Dir> out = spec_.deflector->direction(since, channel);
   if (!out) return std::nullopt;
-  const double time = clock.tasks[task].begin + since, back = time + round_trip;
+  const double time = spec_.clock.tasks[task].begin + since, back = time + round_trip;
   const Pose turned{rotation_from_down(*out), {}};
   Pose turned_back = turned;
   if (spec_.scan_lag)

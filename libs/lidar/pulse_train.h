@@ -52,11 +52,18 @@ class ClockedTrain : public PulseTrain {
   explicit ClockedTrain(TrainSpec spec);
   uint64_t size() const override { return size_; }
   std::optional<ResponsePulse> pulse(uint64_t i, double round_trip = 0) const override;
+  uint64_t lit() const;   // pulses at which a beam leaves
+  TimeSpan span() const;  // s, of the emissions
   // Least time between two pulses of one channel, s; infinite for a single pulse.
   double interval() const;
   const TrainSpec& spec() const { return spec_; }
 
  private:
+  struct Shot {
+    size_t channel = 0;
+    double since = 0;  // s, after the task's begin
+  };
+  Shot shot_time(uint64_t in_task) const;
   TrainSpec spec_;
   std::vector<size_t> channels_;  // by their delays
   std::vector<uint64_t> first_;   // pulses before each task
