@@ -27,6 +27,7 @@
 #include "heat.h"
 #include "helios_survey.h"
 #include "lidar.h"
+#include "lidar_presets.h"
 #include "light/light_rows.h"
 #include "load.h"
 #include "log.h"
@@ -182,6 +183,8 @@ std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
   if (o.list_sources) return print(light_rows().list());
   if (o.list_detectors) return print(lidar_detectors().list());
   if (o.list_deflectors) return print(deflectors().list());
+  if (o.lidar_presets) return print(list_lidar_presets());
+  if (!o.lidar_preset.empty()) return print(lidar_preset(o.lidar_preset));
   if (o.list_truth) return print(truth_rows().list());
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());

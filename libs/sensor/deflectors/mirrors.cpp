@@ -61,11 +61,11 @@ class Triangle : public Deflector {
 class Sweep : public Deflector {
  public:
   explicit Sweep(const Params& p)
-      : half_(p.number_in("half_angle_deg", 0, 180, "degrees") * kDegree),
+      : half_(p.number_in("half_angle_deg", 0, 360, "degrees") * kDegree),
         rate_(p.number_in("rate_hz", 0, kMostHz, "Hz")),
-        start_(p.number_in("start_deg", -180, 180, "degrees", 0) * kDegree),
-        from_(p.number_in("from_deg", -180, 180, "degrees", -half_ / kDegree) * kDegree),
-        to_(p.number_in("to_deg", -180, 180, "degrees", half_ / kDegree) * kDegree) {
+        start_(p.number_in("start_deg", -360, 360, "degrees", 0) * kDegree),
+        from_(p.number_in("from_deg", -360, 360, "degrees", -half_ / kDegree) * kDegree),
+        to_(p.number_in("to_deg", -360, 360, "degrees", half_ / kDegree) * kDegree) {
     if (!(std::fabs(start_) <= half_)) throw p.at("start_deg").error("the sweep does not reach its start");
     if (!(from_ <= to_)) throw p.error(strf("no beam leaves from %g to %g degrees", from_ / kDegree, to_ / kDegree));
   }
