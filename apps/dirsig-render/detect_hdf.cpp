@@ -12,8 +12,7 @@ namespace {
 
 class WaveformOutput : public DetectOutput {
  public:
-  explicit WaveformOutput(const DetectContext& c)
-      : context_(c), frame_(*c.head.origin), writer_(c.folder + "/waveforms.h5", command_line()) {
+  explicit WaveformOutput(const DetectContext& c) : context_(c), frame_(*c.head.origin) {
     for (const auto& d : c.spec.detectors) {
       beams_.push_back(d->sample_unit() == "counts" ? kept_++ : kNone);
       if (kept_ > 16)
@@ -38,12 +37,12 @@ class WaveformOutput : public DetectOutput {
       };
       s.first = at(s.start), s.last = at(r.grid.middle(r.grid.count - 1)),
       s.instrument = frame_.geodetic_from_enu(instrument);
-      writer_.add(beam, s);
+      writer().add(beam, s);
       ++shots_;
     }
   }
   void finish(Json& log) override {
-    writer_.finish();
+    writer().finish();
     Json one = Json::object();
     one.set("file", "waveforms.h5"), one.set("shots", shots_);
     log.set("waveforms_h5", std::move(one));
@@ -51,6 +50,10 @@ class WaveformOutput : public DetectOutput {
 
  private:
   static constexpr size_t kNone = ~size_t{0};
+  WaveformWriter& writer() {
+    if (!writer_) writer_.emplace(context_.folder + "/waveforms.h5", command_line());
+    return *writer_;
+  }
   // The transmitted pulse at samples as long as the receiver's, its maximum 1.
   void begin(size_t beam, const DetectedPulse& p, double step) {
     if (begun_.size() <= beam) begun_.resize(beam + 1, false);
@@ -66,12 +69,12 @@ class WaveformOutput : public DetectOutput {
       most = std::max(most, power.back());
     }
     for (double& v : power) v /= most;
-    writer_.begin_beam(beam, context_.spec.detectors[p.detector]->name(), step, power);
+    writer().begin_beam(beam, context_.spec.detectors[p.detector]->name(), step, power);
   }
 
   const DetectContext context_;
   SceneFrame frame_;
-  WaveformWriter writer_;
+  std::optional<WaveformWriter> writer_;
   std::vector<size_t> beams_;  // of each detector
   std::vector<bool> begun_;
   size_t kept_ = 0;
@@ -80,8 +83,7 @@ class WaveformOutput : public DetectOutput {
 
 class PhotonOutput : public DetectOutput {
  public:
-  explicit PhotonOutput(const DetectContext& c)
-      : context_(c), frame_(*c.head.origin), writer_(c.folder + "/photons.h5", command_line()) {
+  explicit PhotonOutput(const DetectContext& c) : context_(c), frame_(*c.head.origin) {
     size_t kept = 0;
     for (const auto& d : c.spec.detectors) tracks_.push_back(d->counts_photons() ? kept++ : kNone);
     if (kept > PhotonWriter::kTracks.size())
@@ -103,16 +105,16 @@ class PhotonOutput : public DetectOutput {
         const auto at = place_of_return(p.head, p.pulse(), pixel, one.time);
         if (!at) continue;
         const Vec3 from = *at - *first_;
-        writer_.add(track,
-                    {frame_.geodetic_from_enu(*at), time, dot(from, ahead_), ahead_.x * from.y - ahead_.y * from.x,
-                     static_cast<uint32_t>(pixel), static_cast<uint32_t>(p.number()), one.signal});
+        writer().add(track,
+                     {frame_.geodetic_from_enu(*at), time, dot(from, ahead_), ahead_.x * from.y - ahead_.y * from.x,
+                      static_cast<uint32_t>(pixel), static_cast<uint32_t>(p.number()), one.signal});
         ++photons_;
       }
     }
-    writer_.add_pulse(track, time, background, p.pulse().energy);
+    writer().add_pulse(track, time, background, p.pulse().energy);
   }
   void finish(Json& log) override {
-    writer_.finish();
+    writer().finish();
     Json one = Json::object();
     one.set("file", "photons.h5"), one.set("photons", photons_);
     log.set("photons_h5", std::move(one));
@@ -120,9 +122,13 @@ class PhotonOutput : public DetectOutput {
 
  private:
   static constexpr size_t kNone = ~size_t{0};
+  PhotonWriter& writer() {
+    if (!writer_) writer_.emplace(context_.folder + "/photons.h5", command_line());
+    return *writer_;
+  }
   const DetectContext context_;
   SceneFrame frame_;
-  PhotonWriter writer_;
+  std::optional<PhotonWriter> writer_;
   std::vector<size_t> tracks_;  // of each detector
   std::optional<Vec3> first_;   // place of the first emission
   Vec3 ahead_;

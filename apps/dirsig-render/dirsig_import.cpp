@@ -15,6 +15,7 @@
 #include "formats/dirsig/dirsig.h"
 #include "formats/tape5/tape5.h"
 #include "formats/weather/weather.h"
+#include "helios_survey.h"
 
 namespace suite {
 
@@ -32,30 +33,6 @@ std::string place_for(std::vector<std::string>& taken, const std::string& folder
     place = strf("%s_%d.h5", stem.c_str(), k);
   taken.push_back(place);
   return place;
-}
-
-// Runs the scene-prep that stands beside this program; its report of a scene that is refused goes to stderr.
-void prepare(const std::string& scene, const std::string& place, const std::vector<std::string>& search) {
-  const std::string program = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scene-prep").string();
-  std::vector<std::string> words{program, scene, "-o", place, "-q"};
-  for (const std::string& folder : search) words.insert(words.end(), {"--path", folder});
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int fault = posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  const std::string hint = "scene-prep " + scene + " -o " + place;
-  if (fault != 0)
-    throw Error(Where{scene, 0, 0, {}, -1}, "the scene cannot be prepared: there is no '" + program + "'", hint);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) throw Error(Where{scene, 0, 0, {}, -1}, "the scene cannot be prepared", hint);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw Error(Where{scene, 0, 0, {}, -1}, "scene-prep refuses this scene", "its report stands above");
 }
 
 dirsig::DeckAir air_of_deck(const std::string& path) {
@@ -121,10 +98,38 @@ bool is_of_dirsig(const std::string& path) {
   return dirsig::is_simulation(path, head);
 }
 
+void prepare_scene(const std::string& scene, const std::string& place, const std::vector<std::string>& search) {
+  const std::string program = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scene-prep").string();
+  std::vector<std::string> words{program, scene, "-o", place, "-q"};
+  for (const std::string& folder : search) words.insert(words.end(), {"--path", folder});
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int fault = posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  const std::string hint = "scene-prep " + scene + " -o " + place;
+  if (fault != 0)
+    throw Error(Where{scene, 0, 0, {}, -1}, "the scene cannot be prepared: there is no '" + program + "'", hint);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw Error(Where{scene, 0, 0, {}, -1}, "the scene cannot be prepared", hint);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    throw Error(Where{scene, 0, 0, {}, -1}, "scene-prep refuses this scene", "its report stands above");
+}
+
 void check_import_usage(const RenderOptions& o) {
   if (o.account.empty() && o.convert.empty() && o.search.empty() && !o.strict) return;
-  if (!is_of_dirsig(o.simulation))
-    throw UsageError("--path, --import-report, --convert and --strict go with a simulation of DIRSIG (.sim, .jsim)");
+  const bool survey = is_of_helios(o.simulation);
+  if (!survey && !is_of_dirsig(o.simulation))
+    throw UsageError(
+        "--path, --import-report, --convert and --strict go with a simulation of DIRSIG (.sim, .jsim) or a survey of "
+        "HELIOS++ (.xml)");
+  if (survey && !o.account.empty())
+    throw UsageError("--import-report goes with a simulation of DIRSIG; what a survey loses is printed");
   if (!o.convert.empty() && (!o.account.empty() || !o.settings.empty()))
     throw UsageError("--convert goes without --import-report and --set");
 }
@@ -142,7 +147,7 @@ Simulation import_simulation(const RenderOptions& o, const SimulationCallbacks& 
                   "scene-prep " + scene + " -o " + place);
     if (!alone) return place;
     make_folder(o.output);
-    prepare(scene, place, o.search);
+    prepare_scene(scene, place, o.search);
     return place;
   };
   const dirsig::MadeText made = dirsig::simulation_of(import, o.simulation, help);

@@ -7,6 +7,9 @@ namespace suite {
 
 // By the name and the beginning of the file; false when there is none.
 bool is_of_dirsig(const std::string& path);
+// Runs the scene-prep that stands beside this program; its report of a scene that is refused goes to stderr. search:
+// folders of --path. Error: it is refused.
+void prepare_scene(const std::string& scene, const std::string& place, const std::vector<std::string>& search);
 // UsageError when options of imports go with another text, or do not go together.
 void check_import_usage(const RenderOptions& o);
 // Prepares the scenes into the output folder by the scene-prep beside this program (unless they are up to date), tells

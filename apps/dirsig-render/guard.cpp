@@ -110,7 +110,8 @@ void check_inputs(const RenderOptions& o, const Simulation& sim) {
   const auto result = [&](const std::filesystem::path& path) {
     const std::string name = path.filename().string();
     return may_be_of_run(name, sim.heat && o.heat.empty()) ||
-           std::ranges::any_of(sim.sensors, [&](const auto& s) { return may_be_result(name, s->name()); });
+           std::ranges::any_of(sim.sensors, [&](const auto& s) { return may_be_result(name, s->name()); }) ||
+           std::ranges::any_of(sim.lidars, [&](const auto& l) { return name == l.instrument.name + "_response.h5"; });
   };
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(o.output, none))

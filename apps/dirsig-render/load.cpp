@@ -6,6 +6,7 @@
 #include "base/stopwatch.h"
 #include "formats/sqt/sqt.h"
 #include "heat.h"
+#include "lidar.h"
 #include "scene/combine.h"
 #include "scheduler/prepass.h"
 #include "together.h"
@@ -18,6 +19,7 @@ namespace {
 SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, const RenderOptions& render, Ranks* ranks) {
   SceneNeeds needs;
   needs.windows_um = windows_um(sim.sensors, options.prepasses);
+  for (const std::array<double, 2>& window : lidar_windows_um(sim)) needs.windows_um.push_back(window);
   for (const auto& sensor : sim.sensors)
     for (const std::string& truth : sensor->truth())
       needs.temperatures = needs.temperatures || truth.starts_with("temperature");
@@ -32,7 +34,7 @@ SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, const Rend
 // Whether any capture looks at a time in a span. (With an epoch of the text, whose seconds may count from elsewhere, it
 // may.)
 bool seen(const Simulation& sim, const JobOptions& options, TimeSpan life) {
-  if (sim.epoch) return true;
+  if (sim.epoch || !sim.lidars.empty()) return true;
   for (const Sensors all : {Sensors(sim.sensors), options.prepasses})
     for (const auto& sensor : all)
       for (const Task& task : sensor->tasks())

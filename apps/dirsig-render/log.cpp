@@ -92,7 +92,7 @@ Json diagnostics_json() {
 
 }  // namespace
 
-void write_log(const std::string& path, const JobReport& r, const JobOptions& options) {
+void write_log(const std::string& path, const JobReport& r, const JobOptions& options, Json lidars) {
   Json j = Json::object();
   j.set("command", command_line());
   j.set("version", kVersion);
@@ -141,6 +141,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
     captures.push(std::move(one));
   }
   j.set("captures", std::move(captures));
+  j.set("laser_radars", std::move(lidars));
   write_file(path, j.text());
 }
 

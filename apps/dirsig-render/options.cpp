@@ -17,6 +17,7 @@ AppInfo render_info() {
           "  NAME_error_correlation.csv   correlation of the errors of the bands, which share paths\n"
           "and render.json    what was run: every capture with its paths, seconds and errors\n"
           "and what the sensor itself makes: NAME_dn.img, NAME_electrons.img, tables and logs as text.\n"
+          "Of laser radars: NAME_response.h5, photons by arrival, and what detectors make of it in the folder NAME.\n"
           "The same seed gives the same bytes for any number of threads.\n\n"
           "Examples:\n"
           "  dirsig-render sim.yaml -o out/\n"
@@ -31,6 +32,7 @@ AppInfo render_info() {
           "  dirsig-render -o out --view out.html              a page to look at the finished results\n"
           "  dirsig-render sim.yaml --study study/             how error falls with run time\n"
           "  dirsig-render sim.yaml --dry-run                 what would be computed\n"
+          "  dirsig-render --lidar-preset vlp_16              a laser radar to paste (apps/dirsig-render/LIDAR.md)\n"
           "  dirsig-render --detect response.h5 detector.yaml -o points    waveforms and points of laser pulses\n\n"
           "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 "
           "our bug."};
@@ -82,6 +84,10 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
   cli.flag("--list-detectors", o.list_detectors, "print the kinds of detectors of --detect and stop");
   cli.flag("--list-image-detectors", o.list_image_detectors, "print the kinds of detectors of images and stop");
+  cli.flag("--list-deflectors", o.list_deflectors, "print the kinds of scanners of laser radars and stop");
+  cli.flag("--lidar-presets", o.lidar_presets, "print the laser radars that are known by public numbers and stop");
+  cli.option("--lidar-preset", o.lidar_preset,
+             "print one of them as a text for `sensors:`, with the sources of its numbers, and stop", "NAME");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
   cli.flag("--list-diagnostics", o.list_diagnostics, "print the code, condition and cure of every diagnostic and stop");

@@ -25,6 +25,9 @@
 #include "formats/sqt/sqt.h"
 #include "guard.h"
 #include "heat.h"
+#include "helios_survey.h"
+#include "lidar.h"
+#include "lidar_presets.h"
 #include "light/light_rows.h"
 #include "load.h"
 #include "log.h"
@@ -41,6 +44,7 @@
 #include "scheduler/prepass.h"
 #include "scheduler/through_tables.h"
 #include "sensor/detectors/detectors.h"
+#include "sensor/deflectors/deflector.h"
 #include "sensor/plugin.h"
 #include "start.h"
 #include "study.h"
@@ -166,10 +170,10 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
 
 // What is told and written of a whole run.
 void conclude(const JobReport& report, const JobOptions& options, const std::string& folder, const Simulation& sim,
-              const LoadedScene& loaded, OutputWriter& writer) {
+              const LoadedScene& loaded, const LidarJobs& lidars, OutputWriter& writer) {
   report_job(report, *loaded.scene, options, folder);
   for (const auto& reads : loaded.later) note(reads->text());
-  write_log(in_folder(folder, "render.json"), report, options);
+  write_log(in_folder(folder, "render.json"), report, options, lidars.log());
   if (!report.captures_waiting) write_sensor_logs(sim, writer);
 }
 
@@ -180,6 +184,9 @@ std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
   if (o.list_sources) return print(light_rows().list());
   if (o.list_detectors) return print(lidar_detectors().list());
   if (o.list_image_detectors) return print(array_detectors().list());
+  if (o.list_deflectors) return print(deflectors().list());
+  if (o.lidar_presets) return print(list_lidar_presets());
+  if (!o.lidar_preset.empty()) return print(lidar_preset(o.lidar_preset));
   if (o.list_truth) return print(truth_rows().list());
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());
@@ -272,8 +279,9 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
 }
 
 Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
-  Simulation sim = is_of_dirsig(o.simulation) ? import_simulation(o, callbacks, alone)
-                                              : read_simulation(o.simulation, callbacks, o.settings);
+  Simulation sim = is_of_dirsig(o.simulation)   ? import_simulation(o, callbacks, alone)
+                   : is_of_helios(o.simulation) ? import_survey(o, callbacks)
+                                                : read_simulation(o.simulation, callbacks, o.settings);
   report_renamed();
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
@@ -303,6 +311,25 @@ void find_beforehand(const std::shared_ptr<const Scene>& scene, const Simulation
   options.prepasses = facts.light_above().passes();
 }
 
+int stopped_by_signal(const std::string& left) {
+  emit({Dr::stopped, "stopped: " + left});
+  return 128 + stop_signal();
+}
+
+// A simulation whose sensors are laser radars only.
+int run_lidars(LidarJobs& lidars, const Simulation& sim, const std::shared_ptr<const Scene>& scene,
+               const JobOptions& options, const RenderOptions& o) {
+  if (o.dry_run) {
+    check_place(o, sim, false);
+    lidars.forecast();
+    return 0;
+  }
+  const RunLock lock = lock_place(o, sim);
+  const bool whole = lidars.run(scene);
+  write_log(in_folder(o.output, "render.json"), {}, options, lidars.log());
+  return whole ? 0 : stopped_by_signal("laser radars that were finished are in " + o.output);
+}
+
 // Plug-ins come first: they may bring what is asked for.
 void mute_and_load(const RenderOptions& o) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
@@ -317,7 +344,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (const auto code = answer(cli, o)) return *code;
   if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
-  if (!o.convert.empty()) return convert_simulation(o);
+  if (!o.convert.empty()) return is_of_helios(o.simulation) ? convert_survey(o) : convert_simulation(o);
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
   size_t delivered = 0;         // captures whose results were handed over
@@ -335,6 +362,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
     return read_scene_origin(scenes.front().path).origin;
   };
   Simulation sim = simulation_of(o, callbacks, !ranks);
+  LidarJobs lidars(cli, o, sim, ranks != nullptr);
   if (!o.air_lut.empty()) return run_air_lut(o, sim);
   JobOptions options = job_options(sim, o);
   const std::vector<int> forecast = ranks_of(cli, o);
@@ -345,9 +373,11 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   const LoadedScene loaded = load_scenes(sim, options, o, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
+  lidars.check(scene);
+  if (sim.sensors.empty()) return run_lidars(lidars, sim, scene, options, o);
   check_job(sim, *scene, options);
   const bool part = options.share && options.share->runs();
-  if (o.dry_run) dry_run(scene, sim, options, o);
+  if (o.dry_run) dry_run(scene, sim, options, o), lidars.forecast();
   if (o.dry_run && forecast.empty()) return 0;
   if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
@@ -364,13 +394,13 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (!sim.sources.any())
     emit({Dr::no_sources, "there is no sun, no sky and no lamp: only materials with a temperature will be seen"});
   options.diagnose = emit;
+  if (!lidars.run(scene)) return stopped_by_signal("no image was begun in " + o.output);
   start_sensors(sim, options, part ? "" : o.output);
   JobReport report = run_safely(scene, sim, options, o.output, delivered);
   flags.add_to(report);
-  conclude(report, options, o.output, sim, loaded, *writer);
+  conclude(report, options, o.output, sim, loaded, lidars, *writer);
   if (!report.stopped) return show_own(o);
-  emit({Dr::stopped, "stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options)});
-  return 128 + stop_signal();
+  return stopped_by_signal(what_is_left(o.output, report.captures, report.captures_asked, options));
 }
 
 }  // namespace suite

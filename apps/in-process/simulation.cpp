@@ -32,7 +32,10 @@ Simulation simulation_of(const char* path) {
   callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
     return read_scene_origin(scenes.front().path).origin;
   };
-  return read_simulation(path, callbacks);
+  Simulation sim = read_simulation(path, callbacks);
+  if (!sim.lidars.empty())
+    throw Error(sim.lidars[0].where, "laser radars are not rendered within a process", "dirsig-render " + sim.path);
+  return sim;
 }
 
 std::shared_ptr<Scene> scenes_of(const Simulation& sim) {

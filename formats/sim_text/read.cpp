@@ -8,6 +8,7 @@
 #include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sim_text/sources.h"
+#include "lidar/lidar_text.h"
 #include "transport/technique_switches.h"
 #include "transport/truth/truth.h"
 
@@ -110,6 +111,35 @@ std::unique_ptr<Sensor> make_sensor_at(const Params& p, const SensorContext& con
   }
 }
 
+// Names of all.
+std::set<std::string> read_sensors(const Params& list, Simulation& sim, const SensorContext& context,
+                                   std::span<const AskedCurve> asked) {
+  std::set<std::string> names;
+  for (const Params& p : list.items()) {
+    std::string name;
+    if (is_lidar(p)) {
+      sim.lidars.push_back({read_lidar(p, context), p.where()});
+      LidarInstrument& lidar = sim.lidars.back().instrument;
+      lidar.epoch = sim.epoch;
+      for (const AskedCurve& curve : asked) check_coverage(curve, lidar);
+      name = lidar.name;
+    } else {
+      check_truth(p, context);
+      sim.sensors.push_back(make_sensor_at(p, context));
+      sim.sensor_where.push_back(p.where());
+      const Sensor& sensor = *sim.sensors.back();
+      check_times(p, sensor, context);
+      for (const AskedCurve& curve : asked) check_coverage(curve, sensor, p.where());
+      if (sim.sources.tabled) check_coverage(*sim.sources.tabled, sensor, p.where());
+      name = sensor.name();
+    }
+    if (!names.insert(name).second)
+      throw p.error("two sensors are named '" + name + "'", "give each its own `name`: it names the output files");
+  }
+  if (names.empty()) throw list.error("a simulation needs at least one sensor");
+  return names;
+}
+
 }  // namespace
 
 Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
@@ -154,25 +184,15 @@ Simulation read_simulation_tree(const Params& root, const std::string& path, con
     return bands;
   };
   sim.heat = read_heat_request(root, sim, context);
-  std::set<std::string> names;
-  const Params sensors = root.at("sensors");
-  for (const Params& p : sensors.items()) {
-    check_truth(p, context);
-    sim.sensors.push_back(make_sensor_at(p, context));
-    sim.sensor_where.push_back(p.where());
-    check_times(p, *sim.sensors.back(), context);
-    for (const AskedCurve& curve : asked) check_coverage(curve, *sim.sensors.back(), p.where());
-    if (sim.sources.tabled) check_coverage(*sim.sources.tabled, *sim.sensors.back(), p.where());
-    if (!names.insert(sim.sensors.back()->name()).second)
-      throw p.error("two sensors are named '" + sim.sensors.back()->name() + "'",
-                    "give each its own `name`: it names the output files");
-  }
-  if (sim.sensors.empty()) throw sensors.error("a simulation needs at least one sensor");
+  const std::set<std::string> names = read_sensors(root.at("sensors"), sim, context, asked);
   for (const auto& [sensor, preview] : sim.output.previews)
-    if (!names.count(sensor))
+    if (!names.contains(sensor))
       throw Error(root.at("output").at("previews").where(sensor), "there is no sensor '" + sensor + "'",
                   name_hint(sensor, std::vector<std::string>(names.begin(), names.end())));
-  root.reject_unread();
+  if (sim.lidars.empty())
+    root.reject_unread();
+  else
+    sim.unread = root;
   sim.files.assign(root.paths().begin(), root.paths().end());
   return sim;
 }

@@ -11,6 +11,7 @@
 
 #include "base/params.h"
 #include "heat/heat_balance.h"
+#include "lidar/instrument.h"
 #include "scheduler/scheduler.h"
 #include "sensor/sensors.h"
 
@@ -64,6 +65,12 @@ struct HeatRequest {
   Where where;
 };
 
+// A laser radar among the sensors.
+struct SimulationLidar {
+  LidarInstrument instrument;
+  Where where;  // in the text
+};
+
 struct Simulation {
   std::string path;
   std::vector<std::string> settings;  // applied to the text
@@ -79,6 +86,10 @@ struct Simulation {
   bool dut1_given = false;   // by the text
   std::vector<std::unique_ptr<Sensor>> sensors;
   std::vector<Where> sensor_where;  // of each, in the text
+  std::vector<SimulationLidar> lidars;
+  // Set where there are laser radars: the text, of which what detection reads (LidarInstrument::detection) has not been
+  // read. Who reads it asks for reject_unread().
+  std::optional<Params> unread;
   OutputSpec output;
   std::optional<HeatRequest> heat;
 };

@@ -199,6 +199,16 @@ void check_coverage(const AskedCurve& curve, const Sensor& sensor, const Where& 
     }
 }
 
+void check_coverage(const AskedCurve& curve, const LidarInstrument& lidar) {
+  const double low = lidar.laser.wavelength_um - 0.5 * lidar.receiver.filter_um,
+               high = lidar.laser.wavelength_um + 0.5 * lidar.receiver.filter_um;
+  if (curve.curve.covers(low, high)) return;
+  throw Error(curve.where,
+              curve.what + " is given from " + curve.curve.range_text() + ", and the filter of laser radar '" +
+                  lidar.name + strf("' reaches from %.6g to %.6g um", low, high),
+              curve.hint);
+}
+
 SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
   SourceSpecs s;
   MotionContext motion;

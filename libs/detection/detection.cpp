@@ -34,10 +34,10 @@ PulseShape read_pulse(const Params& params, const PulseFile& file) {
   return PulseShape::table(std::move(t.time), std::move(t.power), p.where());
 }
 
-DetectionSpec read_detection(const Params& params, const PulseFile& file) {
+DetectionSpec read_detection(const Params& params, const Params& laser, const PulseFile& file) {
   DetectionSpec s;
   s.seed = static_cast<uint64_t>(params.integer("seed", 0, 1LL << 53, 1));
-  s.pulse = read_pulse(params, file);
+  s.pulse = read_pulse(laser, file);
   s.gate = read_gate(params);
   if (const auto how = params.find("pulses_in_air"))
     s.in_air = std::array{PulsesInAir::refuse, PulsesInAir::fold,

@@ -21,8 +21,8 @@ struct PulseTable {
 using PulseFile = std::function<PulseTable(const Params&)>;
 // Key `pulse`: {kind: impulse | gaussian, fwhm_ns | rectangular, length_ns | table, time_ns, power | file, ...}.
 PulseShape read_pulse(const Params& params, const PulseFile& file);
-// Keys seed, pulse, gate, pulses_in_air, detectors. Located Errors.
-DetectionSpec read_detection(const Params& params, const PulseFile& file);
+// Keys seed, gate, pulses_in_air, detectors, and of `laser` pulse. Located Errors.
+DetectionSpec read_detection(const Params& params, const Params& laser, const PulseFile& file);
 
 // One pulse of one detector.
 struct DetectedPulse {

@@ -77,7 +77,7 @@ struct LidarInstrument {
   StartFrom start_from = StartFrom::automatic;
   std::vector<std::string> tags;  // of materials with a channel of their own
   std::optional<Utc> epoch;
-  // What `dirsig-render --detect` reads: pulse shape, detectors, output. Null: responses are stored only.
+  // The map of the text, of which detection reads the rest; nothing: there is none.
   std::optional<Params> detection;
 };
 

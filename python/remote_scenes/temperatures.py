@@ -44,7 +44,8 @@ def _dataset(file: Any) -> xr.Dataset:
     for name, second in _OF_FACES.items():
         dims = ("face", second) if second else ("face",)
         dataset[name] = (dims, np.asarray(faces[name][:]), {"units": faces[name].units})
-    names = np.array([str(n) for n in file["materials"][:]])
+    materials = file["materials"]
+    names = np.array([str(materials[k]) for k in range(len(materials))])  # one by one: netCDF4 misreads several fixed-length texts at once
     dataset["material"] = ("face", names[np.asarray(elements["material"][:])[element]])
     dataset["area"] = ("face", np.asarray(elements["area"][:])[element], {"units": "m2"})
     dataset["is_back"] = ("face", np.asarray(faces["is_back"][:]).astype(bool))

@@ -34,6 +34,7 @@ std::unique_ptr<Deflector> make_deflector(const Params& params);
 DeflectorRow fixed_deflector_row();
 DeflectorRow galvo_row();
 DeflectorRow triangle_row();
+DeflectorRow sweep_row();
 DeflectorRow polygon_row();
 DeflectorRow palmer_row();
 // prisms.cpp

@@ -6,8 +6,8 @@ namespace suite {
 const Registry<DeflectorRow>& deflectors() {
   static const Registry<DeflectorRow> rows(
       "kind of deflector", "",
-      {fixed_deflector_row(), galvo_row(), triangle_row(), polygon_row(), palmer_row(), risley_row(), fibre_row(),
-       line_array_row(), flash_row(), rotating_head_row()});
+      {fixed_deflector_row(), galvo_row(), triangle_row(), sweep_row(), polygon_row(), palmer_row(), risley_row(),
+       fibre_row(), line_array_row(), flash_row(), rotating_head_row()});
   return rows;
 }
 

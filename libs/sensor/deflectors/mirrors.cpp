@@ -40,10 +40,11 @@ class Triangle : public Deflector {
   explicit Triangle(const Params& p)
       : half_(p.number_in("half_angle_deg", 0, 90, "degrees") * kDegree),
         rate_(p.number_in("rate_hz", 0, kMostHz, "Hz")),
-        turn_(p.number_in("turn_share", 0, 1, "", 0.1)) {}
+        turn_(p.number_in("turn_share", 0, 1, "", 0.1)),
+        phase_(p.number_in("phase_deg", -360, 360, "degrees", 0) / 90) {}
   std::optional<Dir> direction(double t, size_t) const override {
     // In quarters of a period: 0 at 0, the half angle at 1, and the same backwards and to the other side.
-    const double x = 4 * rate_ * t, period = x - 4 * std::floor(x / 4);
+    const double x = 4 * rate_ * t + phase_, period = x - 4 * std::floor(x / 4);
     const double sign = period < 2 ? 1 : -1, within = period < 2 ? period : period - 2;
     const double quarter = within < 1 ? within : 2 - within;
     // Even up to 1 - turn, then a parabola with its top at 1: speed v with v (1 - turn) + v turn / 2 = 1.
@@ -53,7 +54,31 @@ class Triangle : public Deflector {
   }
 
  private:
-  double half_, rate_, turn_;
+  double half_, rate_, turn_, phase_;  // phase in quarters
+};
+
+// One way at even speed from -half to +half, and again; the beam leaves within a part of it.
+class Sweep : public Deflector {
+ public:
+  explicit Sweep(const Params& p)
+      : half_(p.number_in("half_angle_deg", 0, 360, "degrees") * kDegree),
+        rate_(p.number_in("rate_hz", 0, kMostHz, "Hz")),
+        start_(p.number_in("start_deg", -360, 360, "degrees", 0) * kDegree),
+        from_(p.number_in("from_deg", -360, 360, "degrees", -half_ / kDegree) * kDegree),
+        to_(p.number_in("to_deg", -360, 360, "degrees", half_ / kDegree) * kDegree) {
+    if (!(std::fabs(start_) <= half_)) throw p.at("start_deg").error("the sweep does not reach its start");
+    if (!(from_ <= to_)) throw p.error(strf("no beam leaves from %g to %g degrees", from_ / kDegree, to_ / kDegree));
+  }
+  std::optional<Dir> direction(double t, size_t) const override {
+    const double x = half_ > 0 ? rate_ * t + (start_ + half_) / (2 * half_) : 0;
+    const double angle = -half_ + 2 * half_ * (x - std::floor(x));
+    constexpr double kRounding = 1e-12;
+    if (angle < from_ - kRounding || angle > to_ + kRounding) return std::nullopt;
+    return across(angle);
+  }
+
+ private:
+  double half_, rate_, start_, from_, to_;
 };
 
 // m facets: the beam sweeps 2 (360 / m) duty degrees, always one way, m lines a turn.
@@ -113,6 +138,10 @@ DeflectorRow galvo_row() {
 }
 DeflectorRow triangle_row() {
   return {"triangle", "oscillating mirror: even speed with smooth turns", "", make<Triangle>};
+}
+DeflectorRow sweep_row() {
+  return {"sweep", "rotating mirror by its angles: rate_hz lines a second, one way, lit from one angle to another", "",
+          make<Sweep>};
 }
 DeflectorRow polygon_row() { return {"polygon", "rotating polygon: lines one way, facets a turn", "", make<Polygon>}; }
 DeflectorRow palmer_row() {

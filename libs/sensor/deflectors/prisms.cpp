@@ -15,15 +15,21 @@ std::optional<Dir> refract(Dir d, Dir n, double ratio) {
 
 namespace {
 
-// Prisms one behind the other along -z; each with its first face square to the axis and the second one tilted by the
-// wedge. Thin wedges: sum of (index - 1) wedge (cos, sin)(2 pi rate t + phase).
+// Prisms one behind the other along -z; each with one face square to the axis and the other one, by default the second,
+// tilted by the wedge. Thin wedges: sum of (index - 1) wedge (cos, sin)(2 pi rate t + phase).
 class Risley : public Deflector {
  public:
   explicit Risley(const Params& params) {
     for (const Params& p : params.at("prisms").items())
       prisms_.push_back({p.number_in("wedge_deg", 0, 60, "degrees") * kDegree, p.number_in("index", 1, 5, ""),
                          p.number_in("rotation_hz", -1e7, 1e7, "Hz"),
-                         p.number_in("phase_deg", -360, 360, "degrees", 0) * kDegree});
+                         p.number_in("phase_deg", -360, 360, "degrees", 0) * kDegree,
+                         p.has("tilted") && p.at("tilted").as_choice({"first", "second"}) == 0});
+    if (const auto incident = params.find("incident")) {
+      const auto [x, y, z] = incident->as_direction();
+      if (!(z < 0)) throw incident->error("the beam does not go into the prisms", "[x, y, z] with z below 0");
+      incident_ = {x, y, z};
+    }
     if (prisms_.empty() || prisms_.size() > 8)
       throw params.at("prisms").error(strf("%zu prisms", prisms_.size()), "1 to 8");
     // What a single wedge reflects totally on the axis is no prism.
@@ -33,12 +39,13 @@ class Risley : public Deflector {
                                         "index x sin(wedge) below 1");
   }
   std::optional<Dir> direction(double t, size_t) const override {
-    std::optional<Dir> d = Dir{0, 0, -1};
+    std::optional<Dir> d = incident_;
     for (const Prism& p : prisms_) {
-      d = refract(*d, {0, 0, 1}, 1 / p.index);
       // The thick side lies where the beam is turned to.
-      const double turn = 2 * kPi * p.rate * t + p.phase, s = std::sin(p.wedge);
-      if (d) d = refract(*d, {-s * std::cos(turn), -s * std::sin(turn), -std::cos(p.wedge)}, p.index);
+      const double turn = 2 * kPi * p.rate * t + p.phase, s = std::sin(p.wedge), c = std::cos(p.wedge);
+      const Dir square{0, 0, 1}, tilted{-s * std::cos(turn), -s * std::sin(turn), p.first ? c : -c};
+      d = refract(*d, p.first ? tilted : square, 1 / p.index);
+      if (d) d = refract(*d, p.first ? square : tilted, p.index);
       if (!d) return std::nullopt;
     }
     return d;
@@ -47,7 +54,9 @@ class Risley : public Deflector {
  private:
   struct Prism {
     double wedge, index, rate, phase;
+    bool first;  // its first face is the tilted one
   };
+  Dir incident_{0, 0, -1};
   std::vector<Prism> prisms_;
 };
 

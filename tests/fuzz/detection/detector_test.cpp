@@ -25,7 +25,7 @@ detectors:
 
 DetectionSpec read(std::string_view text) {
   const Params p = Params::parse_text(text, "fuzz.yaml");
-  DetectionSpec spec = read_detection(p, [](const Params& q) -> PulseTable { throw q.error("no files here"); });
+  DetectionSpec spec = read_detection(p, p, [](const Params& q) -> PulseTable { throw q.error("no files here"); });
   p.reject_unread();
   return spec;
 }

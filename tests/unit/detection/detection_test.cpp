@@ -27,7 +27,7 @@ detectors:
 
 DetectionSpec spec_of(const std::string& text) {
   const Params p = Params::parse_text(text, "d.yaml");
-  DetectionSpec s = read_detection(p, [](const Params& q) -> PulseTable { throw q.error("no files here"); });
+  DetectionSpec s = read_detection(p, p, [](const Params& q) -> PulseTable { throw q.error("no files here"); });
   p.reject_unread();
   return s;
 }

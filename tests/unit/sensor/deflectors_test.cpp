@@ -156,5 +156,40 @@ TEST(Deflectors, EveryRowGivesUnitVectorsAndFaultsAreLocated) {
   EXPECT_FALSE(refract({0, std::sin(1.0), -std::cos(1.0)}, {0, 0, 1}, 1.5));  // totally reflected
 }
 
+// One way from -20 to 20 degrees 10 times a second, lit from -5 to 15; a triangle that starts at its end.
+TEST(Deflectors, SweepAndPhase) {
+  const auto sweep = of("{kind: sweep, half_angle_deg: 20, rate_hz: 10, from_deg: -5, to_deg: 15}");
+  for (int k = 0; k < 1000; ++k) {
+    const double t = (k + 0.37) * 1e-3, x = 10 * t + 0.5, angle = -20 + 40 * (x - std::floor(x));
+    if (angle < -5 || angle > 15)
+      EXPECT_FALSE(sweep->direction(t)) << t;
+    else
+      EXPECT_NEAR(across_deg(*sweep, t), angle, 1e-9) << t;
+  }
+  EXPECT_NEAR(across_deg(*of("{kind: sweep, half_angle_deg: 20, rate_hz: 10, start_deg: -20}"), 0), -20, 1e-9);
+  EXPECT_NEAR(across_deg(*of("{kind: triangle, half_angle_deg: 20, rate_hz: 10, turn_share: 0, phase_deg: -90}"), 0),
+              -20, 1e-9);
+  EXPECT_THAT(message_of([&] { of("{kind: sweep, half_angle_deg: 20, rate_hz: 10, start_deg: 30}"); }),
+              HasSubstr("does not reach its start"));
+  EXPECT_THAT(message_of([&] { of("{kind: sweep, half_angle_deg: 20, rate_hz: 10, from_deg: 3, to_deg: 2}"); }),
+              HasSubstr("no beam leaves"));
+}
+
+// A prism turned round bends the beam by the same least angle; a beam along a face's normal only at the other one.
+TEST(Deflectors, PrismsEitherWay) {
+  const double w = 10 * kDegree, n = 1.5;
+  const auto second = of("{kind: risley, prisms: [{wedge_deg: 10, index: 1.5, rotation_hz: 0}]}");
+  EXPECT_NEAR(std::acos(-second->direction(0)->z), std::asin(n * std::sin(w)) - w, 1e-12);
+  const auto first = of("{kind: risley, prisms: [{wedge_deg: 10, index: 1.5, rotation_hz: 0, tilted: first}]}");
+  EXPECT_NEAR(std::acos(-first->direction(0)->z), std::asin(n * std::sin(w - std::asin(std::sin(w) / n))), 1e-12);
+  EXPECT_GT(first->direction(0)->x, 0);  // to the thick side, too
+  const auto plate = of("{kind: risley, incident: [0.1, 0, -1], prisms: [{wedge_deg: 0, index: 1.5, rotation_hz: 0}]}");
+  EXPECT_NEAR(plate->direction(0)->x, 0.1 / std::sqrt(1.01), 1e-12);
+  EXPECT_THAT(message_of([&] {
+                of("{kind: risley, incident: [0, 0, 1], prisms: [{wedge_deg: 1, index: 1.5, rotation_hz: 0}]}");
+              }),
+              HasSubstr("does not go into the prisms"));
+}
+
 }  // namespace
 }  // namespace suite

@@ -1,0 +1,40 @@
+// Laser radars of a simulation: their pulses are traced, the responses stored, and detected in one go where the text has
+// detectors.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "base/json.h"
+#include "formats/sim_text/sim_text.h"
+#include "options.h"
+
+namespace suite {
+
+class LidarJobs {
+ public:
+  // Reads what detection says in the texts of the simulation's laser radars, and refuses unknown keys. Located Errors.
+  // UsageError: options that say nothing to laser radars, or that they cannot follow.
+  LidarJobs(const Cli& cli, const RenderOptions& options, Simulation& simulation, bool several_ranks);
+  ~LidarJobs();
+  bool any() const { return !jobs_.empty(); }
+  // Refuses what the scene has not: tags; and what it cannot: motions that end too early. Tells nothing and writes
+  // nothing.
+  void check(const std::shared_ptr<const Scene>& scene);
+  // A line for each: pulses, paths, bins, bytes.
+  void forecast() const;
+  // Traces all of them. The folder is there. False: a signal has stopped it; laser radars that were finished stay.
+  bool run(const std::shared_ptr<const Scene>& scene);
+  // Of each that has been run, for render.json.
+  Json log() const;
+
+ private:
+  struct Job;
+  const RenderOptions& options_;
+  const Simulation& simulation_;
+  std::vector<std::unique_ptr<Job>> jobs_;
+};
+
+// um: what a scene has to be loaded for.
+std::vector<std::array<double, 2>> lidar_windows_um(const Simulation& simulation);
+
+}  // namespace suite
