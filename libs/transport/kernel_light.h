@@ -223,7 +223,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   c.radiance = radiance;
   c.missed = static_cast<float>(missed);
   if (distance < std::numeric_limits<double>::infinity()) c.arrival += space_.optical_way(p, i, distance);
+  if constexpr (kStokes) c.polarised = polarise(node, q.direction);
   contribute();
+  if constexpr (kStokes) hand_over();  // the next light has other matrices
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -251,6 +253,7 @@ Contribution& PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(
   c.radiance = nullptr;
   c.arrival = path.arrival;
   c.missed = std::numeric_limits<float>::infinity();
+  c.polarised = nullptr, c.unknown = 0;
   return c;
 }
 

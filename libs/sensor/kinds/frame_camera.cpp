@@ -6,6 +6,7 @@
 
 #include "math/vec.h"
 #include "sensor/kinds/rows.h"
+#include "sensor/polarimetry.h"
 
 namespace suite {
 
@@ -20,6 +21,7 @@ class FrameCamera final : public Sensor {
     truth_ = read_truth(p);
     wishes_ = read_wishes(p, truth_);
     channels_ = read_channels(p);
+    polarimetry_ = read_polarimetry(p, channels_);
 
     Capture capture;
     capture.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
@@ -44,6 +46,7 @@ class FrameCamera final : public Sensor {
     if (!(length(right_) > 1e-9 * length(up))) throw p.error("`up` runs along the view direction", "give another `up`");
     right_ = normalized(right_);
     down_ = cross(forward_, right_);
+    if (polarimetry_) polarimetry_->up = -down_;
     capture.name = name_;
     capture.window = read_window(p);
     capture.convergence = read_convergence(p);
@@ -71,10 +74,15 @@ class FrameCamera final : public Sensor {
 
   void accept(CaptureResult&& result) override {
     Delivery d{*this, lay_out(tasks_, name_)[result.task][result.capture], std::move(result), bands_, {}, {}, {}, {}};
+    if (polarimetry_) {
+      add_polarisation(d);
+      d.description = text_of(*polarimetry_);
+    }
     deliver_(d);
   }
   std::span<const std::string> truth() const override { return truth_; }
   std::span<const std::string> channels() const override { return channels_; }
+  const Polarimetry* polarimetry() const override { return polarimetry_ ? &*polarimetry_ : nullptr; }
   ImageWishes wishes(const Capture&) const override { return wishes_; }
 
  private:
@@ -83,6 +91,7 @@ class FrameCamera final : public Sensor {
   std::vector<Band> bands_;
   std::vector<std::string> truth_, channels_;
   ImageWishes wishes_;
+  std::optional<Polarimetry> polarimetry_;
   SpectralState state_;
   std::vector<Task> tasks_;
   Vec3 position_, forward_, right_, down_;
