@@ -315,12 +315,11 @@ std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceS
   const bool stokes = ChannelPlan(sensor.channels()).of_stokes();
   std::vector<Diagnostic> all = diagnose_lost_light(
       tracer.scene(), sources, optics, stokes ? for_stokes(options) : options, paths, tracer.periodic().has_value());
-  if (stokes && (SmoothInterfaces(tracer.scene(), optics).any() || !optics.media().empty()))
+  if (stokes && SmoothInterfaces(tracer.scene(), optics).any())
     all.push_back({Dr::stokes_techniques,
                    "sensor '" + sensor.name() +
-                       "' sees polarisation: manifold NEE, multi-vertex volumetric NEE and splitting with a "
-                       "light-directed vertex carry no Mueller matrices and are off; light behind smooth interfaces "
-                       "is left to chance"});
+                       "' sees polarisation: manifold NEE, multi-vertex volumetric NEE and splitting in water carry no "
+                       "Mueller matrices and are off; light behind smooth interfaces is left to chance"});
   for (Diagnostic& d : diagnose_surroundings(tracer, optics)) all.push_back(std::move(d));
   return all;
 }

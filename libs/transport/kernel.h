@@ -284,6 +284,7 @@ class PathKernel final : public PathTracing {
   // kernel_stokes.h: polarisation.
   static constexpr bool kStokes = requires { typename Throughputs::Polarised; };
   const PolarisedEvent* polarise(const NodeAt& node, Dir in, const Continuation* dirac = nullptr);
+  const PolarisedEvent* polarise_aside(const Side& side);
   // kernel_go_on.h: continuations.
   void go_on();
   SUITE_INLINE bool go_on(size_t i);
@@ -387,7 +388,7 @@ class PathKernel final : public PathTracing {
   std::vector<float> side_spectra_;  // [side][bin]
   std::vector<Contribution> contributions_;
   size_t pending_ = 0;  // of them
-  std::vector<Mueller> matrices_;
+  std::vector<Mueller> matrices_, matrices_aside_;
   PolarisedEvent polarised_;  // the last one
   std::vector<float> transmission_;
   uint64_t nodes_met_ = 0;

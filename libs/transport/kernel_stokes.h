@@ -27,4 +27,24 @@ const PolarisedEvent* PathKernel<Surfaces, Space, Throughputs, Estimator>::polar
   return nullptr;
 }
 
+// Of a side flight: what the node makes of the light from there times what the place there makes of its light.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+const PolarisedEvent* PathKernel<Surfaces, Space, Throughputs, Estimator>::polarise_aside(const Side& side) {
+  if constexpr (kStokes && kGuides) {
+    const NodeAt& node = nodes_[side.node];
+    polarise(node, side.path.direction);
+    matrices_aside_.resize(bins_);
+    const auto of =
+        space_.mueller(space_.side(node.path), -side.path.direction, side.sample.direction, matrices_aside_);
+    const bool grey = polarised_.matrices.size() == 1, all = grey && of.grey;
+    const Mueller first = matrices_[0];
+    for (size_t i = 0; i < (all ? 1 : bins_); ++i)
+      matrices_[i] = (grey ? first : matrices_[i]) * matrices_aside_[of.grey ? 0 : i];
+    const float unknown = 1 - (1 - polarised_.unknown) * (1 - static_cast<float>(of.unknown));
+    polarised_ = {{matrices_.data(), all ? 1 : bins_}, unknown};
+    return &polarised_;
+  }
+  return nullptr;
+}
+
 }  // namespace suite

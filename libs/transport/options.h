@@ -49,7 +49,7 @@ inline bool goes_back(const PipelineOptions& options) {
 
 // What is left of them where paths carry polarisation: techniques that tell their matrices.
 inline PipelineOptions for_stokes(PipelineOptions options) {
-  options.refracted_sources = options.volume_chains = options.side_flights = false;
+  options.refracted_sources = options.volume_chains = false;
   return options;
 }
 

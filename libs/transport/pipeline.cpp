@@ -102,7 +102,7 @@ bool Pipeline::may_miss(const Capture& capture) const {
 namespace {
 // Not where a path's one end says where its light belongs.
 KernelContext with_branches(KernelContext context, const Capture& capture) {
-  context.branches = capture.bin_by != Capture::BinBy::escape && !context.stokes;
+  context.branches = capture.bin_by != Capture::BinBy::escape;
   return context;
 }
 }  // namespace

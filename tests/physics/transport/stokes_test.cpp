@@ -281,6 +281,7 @@ const char* iprt_folder() { return std::getenv("SUITE_POLARISATION_DATA"); }
 struct IprtCase {
   double depth = 0.5, albedo = 1, ground = 0;  // single-scattering albedo; reflectance
   int long_paths = 19;                         // power of two
+  bool resolved = true;                        // to 0.3 % in the long run
   std::function<ModelSpec(const IprtRow&)> phase;
 };
 // V over that of the table, by least squares, with its error.
@@ -315,7 +316,7 @@ Slope compare(const std::vector<IprtRow>& rows, const IprtCase& c) {
       const StokesSeen& s = seen[i - first];
       for (size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(s.S[k], rows[i].S[k], 2e-7 + kSignificant * s.error[k]) << "IQU"[k] << " of row " << i;
-        if (!long_run()) continue;
+        if (!long_run() || !c.resolved) continue;
         EXPECT_NEAR(s.S[k], rows[i].S[k], 0.003 * rows[i].S[0]) << "IQU"[k] << " of row " << i;
       }
       if (!(s.error[3] > 0)) continue;
@@ -336,12 +337,46 @@ TEST(Stokes, RayleighLayersAgreeWithPstar) {
              a2 = iprt(std::string(iprt_folder()) + "/iprt/a2_lambert.txt");
   ASSERT_GT(a1.size(), 60u);
   ASSERT_GT(a2.size(), 10u);
-  compare(a1, {0.5, 1, 0, 19, phase});
-  compare(a2, {0.1, 1, 0.3, 18, phase});
+  compare(a1, {0.5, 1, 0, 19, true, phase});
+  compare(a2, {0.1, 1, 0.3, 18, true, phase});
 }
-// Prolate spheroids of mopsmap: six elements, and light that turns.
+// Flights aside bring, in media that scatter forwards, what chance brings without them: Stokes vectors agree, and those
+// with them are less noisy in I. A matrix that polarises: off-diagonal elements up to 0.6 and retardance.
+TEST(Stokes, FlightsAsideBringPolarisedLight) {
+  const ModelSpec forward{"tabulated",
+                          {},
+                          {},
+                          {{"table", "0 400, 5 60, 20 4, 60 0.5, 120 0.1, 140 0.35, 160 0.15, 180 0.3"},
+                           {"matrix",
+                            "0 0 1 1 0 1, 30 -0.2 0.97 0.95 0.1 0.94, 90 -0.6 0.9 0.4 0.3 0.35, 140 0.3 0.85 -0.6 -0.3 "
+                            "-0.55, 180 0 0.7 -0.7 0 -0.4"}},
+                          nullptr};
+  const auto scene = slab_scene(medium(Curve::constant(0), Curve::constant(1), forward), 1);
+  SourceSpecs sources;
+  sources.add(SunSpec{{dir_from_angles(0.7, 0.5), 0, Curve::constant(1)}});
+  std::vector<Ray> rays;
+  for (int i = 0; i < 4; ++i) rays.push_back({{0, 0, -0.5}, dir_from_angles(0.3 + 0.2 * i, 0.8 * i), 0});
+  std::vector<StokesSeen> seen[2];
+  for (const bool aside : {false, true}) {
+    PipelineOptions options;
+    options.side_flights = aside;
+    options.seed = aside ? 1 : 2;
+    seen[aside] = see_stokes(scene, sources, rays, aside ? 1 << 14 : 1 << 16, {}, options);
+  }
+  double polarised = 0;
+  for (size_t i = 0; i < rays.size(); ++i)
+    for (size_t k = 0; k < 4; ++k) {
+      const StokesSeen &a = seen[0][i], &b = seen[1][i];
+      EXPECT_NEAR(a.S[k], b.S[k], 6 * std::hypot(a.error[k], b.error[k])) << "IQUV"[k] << " of ray " << i;
+      if (k > 0) polarised = std::max(polarised, std::fabs(b.S[k]) / (b.error[k] + 1e-12));
+    }
+  EXPECT_GT(polarised, 30) << "it is resolved";
+}
+// Prolate spheroids of mopsmap: six elements, and light that turns. Of the rows off the principal plane V is a hundred
+// thousandth of I: all of them together show its sign and size. Forward peaks leave I at some 1 % at 2^19 paths.
 TEST(Stokes, ALayerOfSpheroidsAgreesWithPstar) {
   if (!iprt_folder()) GTEST_SKIP() << "SUITE_POLARISATION_DATA does not name the folder with iprt/";
+  if (!long_run()) GTEST_SKIP() << "in the long run";
   const NetCdf3 file(std::string(iprt_folder()) + "/sizedistr_spheroid.cdf");
   constexpr size_t n = 1801;
   const auto theta = file.numbers("theta", {1, 1, 6, n}), P = file.numbers("phase", {1, 1, 6, n});
@@ -357,11 +392,11 @@ TEST(Stokes, ALayerOfSpheroidsAgreesWithPstar) {
   }
   const auto a4 = iprt(std::string(iprt_folder()) + "/iprt/a4_spheroid.txt");
   ASSERT_GT(a4.size(), 20u);
-  const Slope V = compare(a4, {0.2, albedo, 0, 19, [&](const IprtRow&) {
+  const Slope V = compare(a4, {0.2, albedo, 0, 19, false, [&](const IprtRow&) {
                                  return ModelSpec{"tabulated", {}, {}, {{"table", table}, {"matrix", matrix}}, nullptr};
                                }});
-  RecordProperty("V over that of the table", strf("%.3f +- %.3f", V.value, V.error));
-  printf("V over that of the table: %.3f +- %.3f\n", V.value, V.error);
+  EXPECT_LT(V.error, 0.05);
+  EXPECT_NEAR(V.value, 1, kSignificant * V.error);
 }
 
 }  // namespace
