@@ -21,6 +21,7 @@ std::string flagged_text(const std::string& sensor, uint64_t part, uint64_t whol
 }  // namespace
 
 void DetectorFlags::take(const Delivery& delivery) {
+  depolarised_.take(delivery);
   Count& count = of_[delivery.sensor.name()];
   for (const uint8_t q : delivery.result.quality) {
     if (!(q & quality_clipped)) continue;
@@ -30,6 +31,7 @@ void DetectorFlags::take(const Delivery& delivery) {
 }
 
 void DetectorFlags::add_to(JobReport& report) const {
+  depolarised_.report();
   for (SensorQuality& q : report.quality) {
     const auto found = of_.find(q.sensor);
     if (found == of_.end() || !found->second.clipped) continue;

@@ -5,14 +5,16 @@
 
 #include "scheduler/scheduler.h"
 #include "sensor/delivery.h"
+#include "stokes_checks.h"
 
 namespace suite {
 
-// Counts what detectors add to the flags of what is delivered: the job has judged its results before they are read.
+// Takes what is delivered: counts what detectors add to the flags, since the job has judged its results before they are
+// read, and what polarisation is not known of.
 class DetectorFlags {
  public:
   void take(const Delivery& delivery);
-  // Their share of the report.
+  // Their share of the report; and a warning of sensors whose light is known without its polarisation in part.
   void add_to(JobReport& report) const;
 
  private:
@@ -20,6 +22,7 @@ class DetectorFlags {
     uint64_t clipped = 0, alone = 0;  // pixels; alone: that carry no other flag
   };
   std::map<std::string, Count> of_;  // by sensor
+  DepolarisedLight depolarised_;
 };
 
 // How many pixels of each sensor are flagged, and what the flags that occur mean. Warns of a sensor whose counts are

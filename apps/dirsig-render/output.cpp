@@ -25,6 +25,15 @@ std::string stem_of(const ImageRows& rows, OutputSpec::Files files) {
   return rows.image;
 }
 
+// What the name of a band in a channel ends with: of Stokes vectors I, Q, U, V.
+std::string channel_suffix(const Sensor& sensor, size_t channel) {
+  const auto names = sensor.channels();
+  const bool stokes = std::any_of(names.begin(), names.end(), [](const auto& n) { return n.starts_with("stokes_"); });
+  if (channel == 0) return stokes ? " I" : "";
+  if (!names[channel].starts_with("stokes_")) return " " + names[channel];
+  return {' ', static_cast<char>(std::toupper(names[channel].back()))};
+}
+
 }  // namespace
 
 // An image while its rows come in.
@@ -87,8 +96,7 @@ EnviHeader OutputWriter::common_header(const Image& m, const Delivery& d) const 
   for (size_t c = 0; c < d.result.channels; ++c)
     for (size_t t = 0; t < d.result.bins; ++t)
       for (const Band& b : d.bands) {
-        h.band_names.push_back(b.name + (c ? " " + d.sensor.channels()[c] : "") +
-                               (d.result.bins > 1 ? strf(" t%zu", t) : ""));
+        h.band_names.push_back(b.name + channel_suffix(d.sensor, c) + (d.result.bins > 1 ? strf(" t%zu", t) : ""));
         h.wavelength_um.push_back(b.center_um);
         h.fwhm_um.push_back(b.fwhm_um);
       }

@@ -47,6 +47,7 @@
 #include "sensor/deflectors/deflector.h"
 #include "sensor/plugin.h"
 #include "start.h"
+#include "stokes_checks.h"
 #include "study.h"
 #include "together.h"
 #include "transport/channels.h"
@@ -230,6 +231,7 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
       for (const std::string& truth : sensor.truth()) truth_rows().find(truth);
       for (const std::string& channel : sensor.channels()) channel_rows().find(channel);
       check_air_asked(sim, scene, sensor);
+      check_stokes(sim, sensor);
       choose_bins_of(sensor, scene, standing, options.biases);
     } catch (const Error& e) {
       throw located(e, scene, sim, s);

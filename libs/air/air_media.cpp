@@ -47,6 +47,27 @@ class LayerPhase final : public PhaseFunction {
     return last ? last->phase->sample(0.5, knot) : 2 * u - 1;
   }
 
+  ScatterModel::Polarised polarised(double cosine, std::span<PlaneBlocks> b) const override {
+    thread_local std::vector<PlaneBlocks> one;
+    thread_local std::vector<float> phase, whole;
+    one.resize(b.size()), phase.resize(b.size()), whole.assign(b.size(), 0.0f);
+    std::fill(b.begin(), b.end(), PlaneBlocks{0, 0, 0, 0, 0, 0});
+    double unknown = 0, all = 0;
+    for (const AirColumn::Kind& kind : column_->kinds) {
+      const bool uniform = kind.phase->spectrally_uniform();
+      kind.phase->eval(cosine, uniform ? std::span(phase).first(1) : std::span(phase));
+      const auto of = kind.phase->polarised(cosine, one);
+      for (size_t i = 0; i < b.size(); ++i) {
+        const float mine = scattering(kind, i) * phase[uniform ? 0 : i];
+        b[i] = b[i] + one[of.grey ? 0 : i] * double{mine};
+        whole[i] += mine, all += mine, unknown += of.unknown * mine;
+      }
+    }
+    for (size_t i = 0; i < b.size(); ++i)
+      b[i] = whole[i] > 0 ? b[i] * (1 / double{whole[i]}) : PlaneBlocks{1, 0, 0, 0, 0, 0};
+    return {b.size() == 1, all > 0 ? unknown / all : 0};
+  }
+
  private:
   float scattering(const AirColumn::Kind& kind, size_t bin) const { return kind.scattering[first_ + bin]; }
   template <class Value>

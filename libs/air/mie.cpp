@@ -127,6 +127,14 @@ MieSphere::Amplitudes MieSphere::amplitudes(double cosine) const {
   return {0.5 * (plus + minus), 0.5 * (plus - minus)};
 }
 
+PlaneBlocks MieSphere::polarised(double cosine) const {
+  const Amplitudes s = amplitudes(cosine);
+  const double across = std::norm(s.across), along = std::norm(s.along), all = 0.5 * (along + across);
+  if (!(all > 0)) return {1, 0, 0, 0, 0, 0};
+  const std::complex<double> x = s.across * std::conj(s.along), y = s.along * std::conj(s.across);
+  return PlaneBlocks::of(1, 0.5 * (along - across) / all, x.real() / all, y.imag() / all);
+}
+
 double MieSphere::phase(double cosine) const {
   const Amplitudes s = amplitudes(cosine);
   return 0.5 * (std::norm(s.across) + std::norm(s.along)) / (kPi * x_ * x_ * scattering_);

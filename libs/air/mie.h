@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "math/mueller.h"
+
 namespace suite {
 
 class MieSphere {
@@ -31,6 +33,9 @@ class MieSphere {
     std::complex<double> across, along;
   };
   Amplitudes amplitudes(double cos_scatter) const;
+  // The scattering matrix over its first element, in the plane of scattering (equation 4.77; U and V have both the
+  // other sign there, which leaves it as it is).
+  PlaneBlocks polarised(double cos_scatter) const;
   // For unpolarised light, 1/sr, over the cosine of the scattering angle (1: straight on); 1 over the sphere.
   double phase(double cos_scatter) const;
   // Adds weight * phase(cosine) at each cosine; quicker than one by one.

@@ -151,6 +151,21 @@ void Accumulators::estimate(size_t problem, size_t first, std::span<double> mean
   if (shares.used < 2) std::fill(errors.begin(), errors.end(), INFINITY);
 }
 
+double Accumulators::covariance(size_t problem, size_t a, size_t b) const {
+  const uint32_t n = accepted(problem);
+  if (!n) return 0;
+  const Shares shares(*this, problem);
+  if (shares.used < 2) return 0;
+  double mean_a = 0, mean_b = 0, sum = 0;
+  for (int s = 0; s < shape_.scrambles; ++s) mean_a += sums(problem, s)[a] / n, mean_b += sums(problem, s)[b] / n;
+  for (int s = 0; s < shape_.scrambles; ++s) {
+    if (!(shares.count[s] > 0)) continue;
+    const double* const of = sums(problem, s);
+    sum += shares.weight[s] * (of[a] / shares.count[s] - mean_a) * (of[b] / shares.count[s] - mean_b);
+  }
+  return sum;
+}
+
 Accumulators::Shortfall Accumulators::shortfall(size_t problem) const {
   Shortfall of;
   const uint32_t n = accepted(problem);

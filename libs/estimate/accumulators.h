@@ -125,6 +125,10 @@ class Accumulators {
     estimate(problem, 0, means, standard_errors);
   }
 
+  // Covariance of the errors of two values' means, by the same formula with the product of both deviations; 0 when
+  // fewer than two scrambles have samples.
+  double covariance(size_t problem, size_t a, size_t b) const;
+
   // Takes over, row by row, what another has computed further: after any sequence of joins a row is that of the part
   // that went furthest with it. Both must be of one run and one shape but for the number of problems and, where the
   // other has fewer, of scrambles. The other's problem i is problem first + i here, or one problem is that of another

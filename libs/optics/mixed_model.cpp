@@ -103,6 +103,29 @@ void MixedModel::delta_probability(Dir out, int lobe, int knot, std::span<float>
   for (size_t k = 0; k < probability.size(); ++k) probability[k] *= static_cast<float>(chance(part, k));
 }
 
+ScatterModel::Polarised MixedModel::mueller(Dir out, Dir in, std::span<Mueller> m) const {
+  thread_local std::vector<Mueller> matrices;
+  thread_local std::vector<float> w, all;
+  matrices.resize(m.size()), w.resize(m.size()), all.assign(m.size(), 0);
+  std::fill(m.begin(), m.end(), Mueller{});
+  double unknown = 0, sum = 0;
+  for (const Part& p : parts_) {
+    p.model->eval(out, in, w);
+    const Polarised of = p.model->mueller(out, in, matrices);
+    for (size_t i = 0; i < m.size(); ++i) {
+      const float mine = w[i] * p.share * (p.spectrum ? p.spectrum[i] : 1);
+      m[i] = m[i] + matrices[of.grey ? 0 : i] * double{mine};
+      all[i] += mine, sum += mine, unknown += of.unknown * mine;
+    }
+  }
+  for (size_t i = 0; i < m.size(); ++i) m[i] = all[i] > 0 ? m[i] * (1 / double{all[i]}) : Mueller::depolariser();
+  return {m.size() == 1, sum > 0 ? unknown / sum : 0};
+}
+ScatterModel::Polarised MixedModel::delta_mueller(Dir out, int lobe, int knot, std::span<Mueller> m) const {
+  const auto n = static_cast<int>(parts_.size());
+  return parts_[static_cast<size_t>(lobe % n)].model->delta_mueller(out, lobe / n, knot, m);
+}
+
 bool MixedModel::has_delta() const {
   return std::any_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.model->has_delta(); });
 }

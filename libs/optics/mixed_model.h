@@ -28,6 +28,8 @@ class MixedModel final : public ScatterModel {
   void pdf(Dir out, Dir in, std::span<float> p) const override;
   void delta_weight(Dir out, int lobe, int knot, std::span<float> weight) const override;
   void delta_probability(Dir out, int lobe, int knot, std::span<float> probability) const override;
+  Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const override;
+  Polarised delta_mueller(Dir out, int lobe, int knot, std::span<Mueller> m) const override;
   bool has_delta() const override;
   bool opaque() const override;
   bool isotropic() const override;

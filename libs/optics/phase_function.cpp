@@ -13,6 +13,11 @@ Dir scattered_direction(Dir out, double cos_scatter, double u) {
   return -normalized(f.to_world({s * std::cos(phi), s * std::sin(phi), cos_scatter}));
 }
 
+ScatterModel::Polarised PhaseFunction::polarised(double, std::span<PlaneBlocks> b) const {
+  b[0] = {1, 0, 0, 0, 0, 0};
+  return {};
+}
+
 const Registry<PhaseRow>& phases() {
   static const Registry<PhaseRow> table("phase function", "OP111",
                                         {hg_row(), double_hg_row(), rayleigh_row(), tabulated_row(), sqt_phase_row(),

@@ -30,6 +30,9 @@ class PhaseFunction {
   virtual void asymmetry(std::span<float> g) const = 0;
   // True when eval gives the same number at all wavelengths.
   virtual bool spectrally_uniform() const { return false; }
+  // Mueller matrices over P11 in the plane of scattering (math/mueller.h), one a wavelength, or b[0] for all of them.
+  // Default: depolarises, and says that it does not know better.
+  virtual ScatterModel::Polarised polarised(double cos_scatter, std::span<PlaneBlocks> b) const;
 };
 
 // The direction `in` for an outgoing direction, a cosine from sample() and one more uniform number for the azimuth.

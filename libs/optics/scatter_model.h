@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "math/mueller.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -65,6 +66,17 @@ class ScatterModel {
   virtual bool opaque() const { return true; }
   // True when turning both directions about z changes nothing: the tangent of the surface does not matter.
   virtual bool isotropic() const { return true; }
+
+  // Polarisation: Mueller matrices over their m11, which is what eval (or delta_weight) says, one a bin, between the
+  // meridian frames of the local shading frame (math/mueller.h). What a model knows no matrix of counts as an ideal
+  // depolariser.
+  struct Polarised {
+    bool grey = true;    // m[0] holds for all bins; the others are not set
+    double unknown = 1;  // share of w, over all bins, whose matrix the model does not know
+  };
+  // Default: depolarises, and says that it does not know better.
+  virtual Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const;
+  virtual Polarised delta_mueller(Dir out, int lobe, int knot, std::span<Mueller> m) const;
 };
 
 }  // namespace suite

@@ -1,5 +1,6 @@
 // A capture on its way: what it is primed with, its plan and its result.
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -28,6 +29,12 @@ struct InFlight {
   void plan(Saving& saving) {
     result.emplace(work.capture, primed->projection().bands(), work.sensor.channels().size(),
                    primed->kit.bands->reference, primed->truth, work.goals, work.bias);
+    const std::span<const std::string> channels = work.sensor.channels();
+    const auto channel = [&](const char* name) {
+      return static_cast<size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin());
+    };
+    if (const size_t q = channel("stokes_q"), u = channel("stokes_u"); std::max(q, u) < channels.size())
+      result->tell_stokes(q, u);
     planner.emplace(work, *result, saving);
   }
   // Bytes that its sums and its result take, at most: a function of what is asked for alone.

@@ -26,6 +26,19 @@ inline void check_many_suns(const Sensor& sensor, const Capture& capture, const 
     throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
 }
 
+// Error: a sensor that measures from the plane of a sun which does not shine.
+inline void check_polarimetry(const Sensor& sensor, const Environment& environment) {
+  const Polarimetry* const how = sensor.polarimetry();
+  if (how && how->frame == StokesFrame::scattering_plane && environment.sun == kNoLight)
+    throw Error("sensor '" + sensor.name() + "': there is no sun, so no scattering plane",
+                "stokes_frame: meridian or image");
+}
+
+inline void check_capture(const Sensor& sensor, const Capture& capture, const Kit& kit) {
+  check_many_suns(sensor, capture, kit);
+  check_polarimetry(sensor, *kit.environment);
+}
+
 struct Primed {
   Primed(std::shared_ptr<const Tracer> t, Kit k, const Sensor& sensor, size_t sensor_state,
          const PipelineOptions& options)

@@ -56,12 +56,27 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   deviations_.resize((n + correlated_every_ - 1) / correlated_every_);
 }
 
+void ResultBuilder::tell_stokes(size_t q, size_t u) {
+  if (result_.bins > 1) return;
+  stokes_[1] = q, stokes_[2] = u;
+  resize_large(result_.stokes_covariance, result_.problems() * result_.bands * 6);
+}
+
+void ResultBuilder::take_stokes(size_t problem, const Accumulators& sums, size_t slot) {
+  double* to = &result_.stokes_covariance[problem * result_.bands * 6];
+  for (size_t band = 0; band < result_.bands; ++band)
+    for (size_t a = 0; a < 3; ++a)
+      for (size_t b = a; b < 3; ++b)
+        *to++ = sums.covariance(slot, stokes_[a] * result_.bands + band, stokes_[b] * result_.bands + band);
+}
+
 void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) {
   CaptureResult& r = result_;
   const size_t values = r.values_per_problem();
   const std::span<double> means(&r.radiance[problem * values], values),
       errors(&r.standard_error[problem * values], values);
   sums.estimate(slot, means, errors);
+  if (stokes_[1]) take_stokes(problem, sums, slot);
   empty_[problem] = sums.accepted(slot) == 0;
   if (empty_[problem]) std::fill(errors.begin(), errors.end(), INFINITY);
   scatter_[problem] = sums.scatter(slot, means[reference_band_]);

@@ -23,6 +23,8 @@ class ResultBuilder {
   // by reference; bias: what is known of the bands' bins (SpectralState::bias).
   ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth,
                 const Goals& goals, std::span<const BandBias> bias = {});
+  // The channels of Q and U, whose errors' covariances are to be told. Before take().
+  void tell_stokes(size_t q, size_t u);
   // Takes problem `problem`, which stands at `slot` of the accumulators. Thread-safe for distinct problems.
   void take(size_t problem, const Accumulators& sums, size_t slot);
   CaptureResult finish();
@@ -38,6 +40,8 @@ class ResultBuilder {
   void flag_unknown(std::span<const TailSums> tails);
   std::vector<float> deviations(const Accumulators& sums, size_t slot, const double* means) const;
   void correlate();
+  void take_stokes(size_t problem, const Accumulators& sums, size_t slot);
+  size_t stokes_[3] = {0, 0, 0};  // channels of I, Q, U; of Q 0: none
   CaptureResult result_;
   std::vector<double> scatter_;             // [problem] variance of the mean if samples were independent
   std::vector<Lack> lacks_;                 // [problem]

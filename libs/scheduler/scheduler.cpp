@@ -273,10 +273,10 @@ class Job {
     const size_t bakes = kits_->optics_bakes();
     Kit kit = kits_->get(item.state.spectral, sensor, capture, tracer_);
     log.new_optics = kits_->optics_bakes() > bakes;
-    check_many_suns(sensor, capture, kit);
+    check_capture(sensor, capture, kit);
     if (options_.diagnose)
-      for (const Diagnostic& d :
-           diagnose_light_paths(*tracer_, sources_, *kit.optics, options_.pipeline, goals_of(item).all.max_paths))
+      for (const Diagnostic& d : diagnose_light_paths(*tracer_, sources_, *kit.optics, options_.pipeline,
+                                                      goals_of(item).all.max_paths, sensor))
         if (diagnosed_.insert(d.text).second) options_.diagnose(d);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "math/mueller.h"
 #include "math/vec.h"
 #include "spectral/state.h"
 
@@ -108,6 +109,20 @@ struct SensorRay {
   bool points_apart = false;
 };
 
+// The frame that a sensor tells Stokes vectors in (libs/math/CONVENTIONS.md).
+enum class StokesFrame : uint8_t {
+  meridian,          // +Q in the plane of the vertical and the ray
+  image,             // +Q up in the picture
+  scattering_plane,  // +Q in the plane of the sun and the ray
+};
+// How a sensor sees polarisation. Its channels then name Q, U, V as it wants them.
+struct Polarimetry {
+  StokesFrame frame = StokesFrame::meridian;
+  Vec3 up = {};  // of `image`: what is up in the picture, along no ray
+  // What stands before the detector, as a matrix in that frame; the radiance is the intensity behind it.
+  std::optional<Mueller> analyser;
+};
+
 // Results of one capture, all problems, row-major. Spectral quantities per band; means and standard errors.
 struct CaptureResult {
   size_t task = 0, capture = 0;
@@ -123,6 +138,8 @@ struct CaptureResult {
   std::vector<double> truth;             // [problem][truth_names]; NaN = no data
   std::vector<double>
       error_correlation;  // [band][band] of the first channel: bands share paths, so their errors do too
+  // Of sensors that tell Q and U: covariances of the errors of their means, II, IQ, IU, QQ, QU, UU; else empty.
+  std::vector<double> stokes_covariance;  // [problem][band][6]
   size_t problems() const { return size_t{columns} * rows; }
   size_t values_per_problem() const { return channels * bins * bands; }
 };
@@ -193,6 +210,8 @@ class Sensor {
   virtual void accept(CaptureResult&& result) = 0;
   // Texts that do not depend on rendering (logs of pose and time), asked for when the job is over.
   virtual std::vector<TextFile> logs() const { return {}; }
+  // Null: the sensor does not see polarisation, and paths carry none.
+  virtual const Polarimetry* polarimetry() const { return nullptr; }
 };
 
 // What is collected unless a sensor or its user says otherwise.

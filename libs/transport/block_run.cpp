@@ -29,6 +29,7 @@ BlockRun::BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture
       plain_(workspace.sink.targets() == 1 && capture.bin_by == Capture::BinBy::none),
       scale_(capture.bin_by == Capture::BinBy::time ? static_cast<float>(capture.bins) : 1.0f) {
   on_surface_.assign(block.problems(), -1);
+  if (const Environment& e = pipeline.environment_; e.sun != kNoLight) sun_ = e.lights[e.sun]->beam()->direction;
   for (uint32_t i = 0; i < block.problems(); ++i) {
     problems_.push_back(problem_at(capture, block, i));
     next_.push_back(sums.next(slot_of(i), block.scrambles));
@@ -127,10 +128,25 @@ void BlockRun::start(uint32_t p) {
       ask_ray(sensor_, capture_, problems_[lane.place], workspace_.numbers[p], stream, number, {weights, bins});
   if (on_surface) stand_off(pipeline_.surface_.tracer(), ray.ray, workspace_.touched, statistics_.trace);
   workspace_.throughputs.begin(p, static_cast<float>(ray.weight) * scale_, ray.spectral ? weights : nullptr);
+  if (workspace_.stokes) workspace_.stokes->begin_rows(p, sensor_matrix(ray));
   workspace_.sink.begin(p);
   PathTracing& kernel = workspace_.kernel_of(ray);
   workspace_.kernels[p] = &kernel;
   kernel.start(p, ray, stream, number);
+}
+
+// From the meridian frame of the light that comes along a ray to what the sensor measures.
+Mueller BlockRun::sensor_matrix(const SensorRay& ray) const {
+  const Polarimetry* const how = sensor_.polarimetry();
+  if (!how) return Mueller::identity();
+  const Dir k = -ray.ray.direction;
+  Mueller m = Mueller::identity();
+  Vec3 first{};  // axis of the sensor's frame, to be made upright on k
+  if (how->frame == StokesFrame::image) first = how->up;
+  if (how->frame == StokesFrame::scattering_plane) first = *sun_;
+  first = first - k * dot(first, k);
+  if (const double size = length(first); size > 1e-12) m = frame_rotation(meridian_frame(k), first / size);
+  return how->analyser ? *how->analyser * m : m;
 }
 
 // Whether the samples of a problem have to be asked for surfaces that they start on: when its first one does. (Where

@@ -30,6 +30,7 @@ class BlockRun {
   std::pair<SampleStream, uint32_t> stream_of(const WaveLane& lane) const;
   void draw(uint32_t paths);
   void start(uint32_t p);
+  Mueller sensor_matrix(const SensorRay& ray) const;
   bool stands_on_surface(size_t i);
   void take(uint32_t p);
   bool add(uint32_t p, size_t slot, int scramble);
@@ -55,6 +56,7 @@ class BlockRun {
   std::vector<uint8_t> whole_;         // it wants all samples from next_ on
   std::vector<int8_t> on_surface_;     // its first sample starts there; -1 = not asked
   std::optional<Ray> clear_;           // the last one that was found to start on no surface
+  std::optional<Dir> sun_;             // towards it, where there is one
   std::vector<uint64_t> keys_;         // of its sample streams
   std::vector<SampleStream> streams_;  // [problem][scramble]
 };

@@ -4,6 +4,19 @@
 
 namespace suite {
 
+namespace {
+
+// A component of Stokes vectors; 0: the part of the intensity of which no polarisation is known.
+ChannelRow stokes(const char* name, const char* about, int component) {
+  return {{name, about, "W/(m2 sr um)", [component](const Contribution& c) { return component ? 0.0f : c.unknown; }},
+          component > 0,
+          false,
+          component,
+          true};
+}
+
+}  // namespace
+
 const Registry<ChannelRow>& channel_rows() {
   const auto when = [](bool (*taken)(const Contribution&)) {
     return [taken](const Contribution& c) { return taken(c) ? 1.0f : 0.0f; };
@@ -44,7 +57,11 @@ const Registry<ChannelRow>& channel_rows() {
            return c.water == WaterSeen::air || (c.water == WaterSeen::mirrored && !c.beam);
          })},
         false,
-        true}});
+        true},
+       stokes("stokes_q", "Q of the light, in the frame of the sensor: along its first axis over across", 1),
+       stokes("stokes_u", "U of the light: half-way from the first axis to the second over across", 2),
+       stokes("stokes_v", "V of the light: turning counter-clockwise as the receiver sees it over clockwise", 3),
+       stokes("depolarised", "what has passed a model without Mueller matrices, and counts as depolarised there", 0)});
   return table;
 }
 
@@ -55,6 +72,10 @@ ChannelPlan::ChannelPlan(std::span<const std::string> names) {
 
 bool ChannelPlan::of_water() const {
   return std::any_of(rows_.begin(), rows_.end(), [](const ChannelRow* row) { return row->of_water; });
+}
+
+bool ChannelPlan::of_stokes() const {
+  return std::any_of(rows_.begin(), rows_.end(), [](const ChannelRow* row) { return row->of_stokes; });
 }
 
 ChannelPlan::ChannelPlan(std::vector<const ChannelRow*> rows) : rows_(std::move(rows)) { SUITE_CHECK(!rows_.empty()); }

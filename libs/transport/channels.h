@@ -16,6 +16,9 @@ struct ChannelRow : RegistryRow<float(const Contribution&)> {
   // sign.
   bool is_signed = false;
   bool of_water = false;  // looks at Contribution::water
+  // 1 to 3: Q, U or V of all light rather than a part of the intensity.
+  int component = 0;
+  bool of_stokes = false;  // needs paths that carry polarisation
 };
 // The first is `radiance`, all light.
 const Registry<ChannelRow>& channel_rows();
@@ -30,7 +33,9 @@ class ChannelPlan {
   // Of a channel beside radiance, 1 .. size() - 1.
   float share(size_t channel, const Contribution& c) const { return rows_[channel]->make(c); }
   bool is_signed(size_t channel) const { return rows_[channel]->is_signed; }
-  bool of_water() const;  // one of them is
+  int component(size_t channel) const { return rows_[channel]->component; }
+  bool of_water() const;   // one of them is
+  bool of_stokes() const;  // one of them is
   bool operator==(const ChannelPlan&) const = default;
 
  private:

@@ -10,6 +10,7 @@
 #include <limits>
 #include <span>
 
+#include "math/mueller.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -20,11 +21,20 @@ struct Factor {
   const float* spectrum = nullptr;
 };
 
+// What an event does to polarised light, where polarisation is carried: Mueller matrices over their m11, between the
+// meridian frames of both directions of travel in the world, one for all bins or one a bin; and the share of the light
+// whose matrix is not known and counts as depolarised.
+struct PolarisedEvent {
+  std::span<const Mueller> matrices;
+  float unknown = 0;
+};
+
 // An event of a path, for algebras that must know more of it than a number for each wavelength.
 struct Event {
   Dir out, in;        // ENU, away from the place: towards the sensor, towards the light
   uint32_t material;  // index into Scene::materials; kNone = the receiver, or scattered in a medium
   bool medium, dirac;
+  const PolarisedEvent* polarised = nullptr;  // null: not carried
 };
 
 // Light that comes from no entry of Environment::lights.
@@ -60,6 +70,10 @@ struct Contribution {
   // Light that is known of, but did not arrive (lost_light.h): the chance that a continuation would have met it.
   // Infinite where light arrived.
   float missed = std::numeric_limits<float>::infinity();
+  // Where polarisation is carried: of the scattering towards the light, which is unpolarised; null = none. And the
+  // share of the light of which it is not known whether it is polarised.
+  const PolarisedEvent* polarised = nullptr;
+  float unknown = 0;
   bool arrived() const { return missed == std::numeric_limits<float>::infinity(); }
 };
 

@@ -93,15 +93,7 @@ class PathKernel final : public PathTracing {
 
  private:
   enum class Stage : uint8_t { leave, arrive, look, fly_sides, look_aside, go_on } stage_ = Stage::leave;
-  struct Question {
-    uint32_t node;  // in nodes_
-    uint16_t light;
-    bool disk, wide, beam;
-    Dir direction;
-    double density;
-    float scale;
-    const float* spectrum;
-  };
+  using Question = SightQuestion;
   struct RefractedQuestion {
     uint32_t node;
     uint16_t light;
@@ -289,6 +281,10 @@ class PathKernel final : public PathTracing {
   void contribute() { ++pending_; }
   void hand_over();
   std::span<float> dense(uint32_t p, uint32_t count = 1);
+  // kernel_stokes.h: polarisation.
+  static constexpr bool kStokes = requires { typename Throughputs::Polarised; };
+  const PolarisedEvent* polarise(const NodeAt& node, Dir in, const Continuation* dirac = nullptr);
+  const PolarisedEvent* polarise_aside(const Side& side);
   // kernel_go_on.h: continuations.
   void go_on();
   SUITE_INLINE bool go_on(size_t i);
@@ -392,6 +388,8 @@ class PathKernel final : public PathTracing {
   std::vector<float> side_spectra_;  // [side][bin]
   std::vector<Contribution> contributions_;
   size_t pending_ = 0;  // of them
+  std::vector<Mueller> matrices_, matrices_aside_;
+  PolarisedEvent polarised_;  // the last one
   std::vector<float> transmission_;
   uint64_t nodes_met_ = 0;
   TraceStatistics touching_;

@@ -61,7 +61,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const 
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
   const bool medium = nodes_[i].event;
-  const Event event{-path.direction, on.in, medium ? kNone : surfaces_.material(p), medium, on.dirac};
+  Event event{-path.direction, on.in, medium ? kNone : surfaces_.material(p), medium, on.dirac};
+  if constexpr (kStokes) event.polarised = polarise(nodes_[i], on.in, on.dirac ? &on : nullptr);
   throughputs_.turn(p, event);
   throughputs_.scatter(p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum}, event);
   const bool passed = leave(i, on);

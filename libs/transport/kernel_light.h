@@ -227,7 +227,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
     const double off = node.event ? 0 : step_along(hits_[node.slot], q.direction);
     c.arrival += space_.optical_way(p, i, distance + off);
   }
+  if constexpr (kStokes) c.polarised = polarise(node, q.direction);
   contribute();
+  if constexpr (kStokes) hand_over();  // the next light has other matrices
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -256,6 +258,7 @@ Contribution& PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(
   c.radiance = nullptr;
   c.arrival = path.arrival;
   c.missed = std::numeric_limits<float>::infinity();
+  c.polarised = nullptr, c.unknown = 0;
   return c;
 }
 

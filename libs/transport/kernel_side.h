@@ -234,7 +234,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_aside(const Side
     c.factor = {1, memory.data()};
     c.radiance = radiance;
     c.arrival += space_.optical_way(p, i, side.flight.length);
+    if constexpr (kStokes) c.polarised = polarise_aside(side);
     contribute();
+    if constexpr (kStokes) hand_over();
   }
 }
 

@@ -41,7 +41,7 @@ KernelChoice choose_kernel(const KernelContext& c) {
     choice.space = Space::field;
   else if (air)
     choice.space = lit ? Space::lit_air : Space::air;
-  choice.matte = c.options.specialise && !c.receivers && c.options.method == Method::standard && !media &&
+  choice.matte = !c.stokes && c.options.specialise && !c.receivers && c.options.method == Method::standard && !media &&
                  MatteSurfaces::serve(c.surface, c.optics);
   return choice;
 }

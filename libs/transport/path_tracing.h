@@ -14,6 +14,7 @@
 namespace suite {
 
 class GlossGuide;
+class StokesThroughputs;
 
 class PathTracing {
  public:
@@ -41,6 +42,7 @@ struct KernelContext {
   bool branches = true;               // paths may go on in more than one way (kernel_branch.h): their light is one sum
   bool waters = false;                // contributions are to tell what they have to do with water
   const GlossGuide* gloss = nullptr;  // null: no continuation is drawn towards light that glossy surfaces throw
+  bool stokes = false;                // paths carry polarisation: only by techniques that tell their matrices
 };
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.
@@ -60,5 +62,8 @@ struct KernelChoice {
 KernelChoice choose_kernel(const KernelContext& context);
 std::unique_ptr<PathTracing> make_kernel(const KernelChoice& choice, const KernelContext& context, size_t width,
                                          SpectralThroughputs& throughputs, Sink<SpectralThroughputs>& sink);
+// For contexts with `stokes` (kernels_stokes.cpp).
+std::unique_ptr<PathTracing> make_stokes_kernel(const KernelChoice& choice, const KernelContext& context, size_t width,
+                                                StokesThroughputs& throughputs, Sink<StokesThroughputs>& sink);
 
 }  // namespace suite

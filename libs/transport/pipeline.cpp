@@ -35,6 +35,10 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
       options_(options) {
   if (options_.method == Method::paper && !optics.media().empty())
     throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
+  if (of_stokes()) {
+    check_stokes();
+    options_ = for_stokes(options_);
+  }
   check(options_);
   if (options_.method == Method::paper && options_.max_nodes == 0) options_.max_nodes = kPaperNodes;
   choice_ = choose_kernel(context(environment_));
@@ -42,6 +46,14 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
 }
 
 Pipeline::~Pipeline() = default;
+
+void Pipeline::check_stokes() const {
+  if (options_.method == Method::paper)
+    throw Error("the paper's estimator knows no polarisation", "render Stokes vectors by the standard method");
+  if (environment_.atmosphere)
+    throw Error("the light of this air is known without its polarisation",
+                "Stokes vectors need the air traced: `scattering: traced` for `air`, or no air");
+}
 
 namespace {
 
@@ -71,7 +83,8 @@ KernelContext Pipeline::context(const Environment& environment) const {
           false,
           true,
           channels_.of_water(),
-          &environment == &environment_ ? gloss_.get() : nullptr};
+          &environment == &environment_ ? gloss_.get() : nullptr,
+          channels_.of_stokes()};
 }
 
 std::unique_ptr<const GlossGuide> Pipeline::make_gloss() const {
@@ -102,8 +115,11 @@ Pipeline::Workspace::Workspace(const KernelContext& x, std::unique_ptr<const Env
       width(w),
       groups(g),
       sink(w, g, channels, lost),
-      throughputs(w, x.optics.state().size(), sink.targets()),
-      kernel(make_kernel(choose_kernel(context), context, width, throughputs, sink)),
+      stokes_sink(sink),
+      plain(x.stokes ? nullptr : std::make_unique<SpectralThroughputs>(w, x.optics.state().size(), sink.targets())),
+      stokes(x.stokes ? std::make_unique<StokesThroughputs>(w, x.optics.state().size(), sink.targets()) : nullptr),
+      throughputs(stokes ? *stokes : *plain),
+      kernel(make()),
       numbers(width),
       kernels(width),
       weights(width * x.optics.state().size()),
@@ -116,11 +132,16 @@ bool Pipeline::Workspace::serves(const Capture& capture, const ChannelPlan& chan
          (!environment || std::equal(suns.begin(), suns.end(), capture.suns.begin(), capture.suns.end(), same));
 }
 
+std::unique_ptr<PathTracing> Pipeline::Workspace::make() {
+  return stokes ? make_stokes_kernel(choose_kernel(context), context, width, *stokes, stokes_sink)
+                : make_kernel(choose_kernel(context), context, width, throughputs, sink);
+}
+
 PathTracing& Pipeline::Workspace::kernel_of(const SensorRay& ray) {
   if (ray.receiver == SensorRay::Receiver::none) return *kernel;
   if (!receiving) {
     context.receivers = true;
-    receiving = make_kernel(choose_kernel(context), context, width, throughputs, sink);
+    receiving = make();
   }
   return *receiving;
 }

@@ -34,12 +34,16 @@ class Pipeline {
   const char* kernel() const { return choice_.name(); }
   // Whether samples may be negative: differences from an even ground (light/air_vertices.h).
   bool is_signed() const { return choice_.space == KernelChoice::Space::lit_air; }
+  // Whether paths carry polarisation.
+  bool of_stokes() const { return channels_.of_stokes(); }
   const Tracer& tracer() const { return surface_.tracer(); }
 
  private:
   friend class BlockRun;
   struct Workspace;
   KernelContext context(const Environment& environment) const;
+  // Error: what polarisation cannot be carried with.
+  void check_stokes() const;
   std::unique_ptr<const GlossGuide> make_gloss() const;
   std::unique_ptr<Workspace> borrow(const Capture& capture) const;
 

@@ -7,6 +7,17 @@
 
 namespace suite {
 
+// What a node asks by one of them.
+struct SightQuestion {
+  uint32_t node;  // of the stage
+  uint16_t light;
+  bool disk, wide, beam;
+  Dir direction;
+  double density;
+  float scale;
+  const float* spectrum;
+};
+
 // Rays towards lights, as a stage of the kernel has asked for them.
 class SightRays {
  public:

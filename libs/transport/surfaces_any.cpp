@@ -74,6 +74,17 @@ Factor AnySurfaces::evaluate(uint32_t p, Dir out, Dir in, std::span<float> dense
   return {1, dense.data()};
 }
 
+ScatterModel::Polarised AnySurfaces::mueller(uint32_t p, Dir out, Dir in, int lobe, int knot,
+                                             std::span<Mueller> m) const {
+  const Interaction& at = *at_[p];
+  const Dir to = at.frame.to_local(out), from = at.frame.to_local(in);
+  const ScatterModel& model = *at.baked->model;
+  const auto of = lobe < 0 ? model.mueller(to, from, m) : model.delta_mueller(to, lobe, knot, m);
+  for (Mueller& one : of.grey ? m.first(1) : m)
+    if (one != Mueller::depolariser()) one = to_world(one, at.frame, out, in);
+  return of;
+}
+
 void AnySurfaces::densities(uint32_t p, Dir out, Dir in, std::span<float> density) const {
   const Interaction& at = *at_[p];
   at.baked->model->pdf(at.frame.to_local(out), at.frame.to_local(in), density);
@@ -107,6 +118,7 @@ bool AnySurfaces::take_dirac(uint32_t p, Dir to, const ScatterModel::Sample& dra
   on.in = at.frame.to_world(drawn.in);
   if (dot(on.in, at.geometric_normal) * drawn.in.z <= 0) return false;  // would leak through the real surface
   on.dirac = true;
+  on.lobe = drawn.lobe;
   at.baked->model->delta_weight(to, drawn.lobe, knot, dense);
   at.baked->model->delta_probability(to, drawn.lobe, knot, {on.density, knots_});
   on.weight = {1, dense.data()};

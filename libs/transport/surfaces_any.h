@@ -15,6 +15,7 @@ namespace suite {
 struct Continuation {
   Dir in;  // ENU
   bool dirac = false;
+  int lobe = 0;   // of a model's Dirac lobe
   Factor weight;  // w, not yet divided by the density
   float density[kMaxKnots];
   double bright = 1;  // light that may come from there, over even light: for roulette
@@ -48,6 +49,8 @@ class AnySurfaces {
   Factor evaluate(uint32_t p, Dir out, Dir in, std::span<float> dense) const;
   // Density of sample() at every knot.
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;
+  // Mueller matrices over m11 of what it makes of light from `in`, in the world; lobe: of a Dirac lobe, -1 = none.
+  ScatterModel::Polarised mueller(uint32_t p, Dir out, Dir in, int lobe, int knot, std::span<Mueller> m) const;
   // Whether sample() uses lobe_u.
   bool needs_lobe(uint32_t p) const { return !at_[p]->baked->model->single_lobe(); }
   // Whether some of it is as sharp as a mirror.
@@ -74,6 +77,8 @@ class AnySurfaces {
   };
   bool warm(uint32_t p) const { return at_[p]->baked && !at_[p]->baked->blackbody.empty(); }
   Emission emission(uint32_t p, Dir out, std::span<float> dense) const;
+  // Share of it of which it is not known whether it is polarised: all but that of diffuse surfaces.
+  float emission_unknown(uint32_t p) const { return at_[p]->baked->model->diffuse() ? 0 : 1; }
 
  private:
   bool take_dirac(uint32_t p, Dir to, const ScatterModel::Sample& drawn, int knot, std::span<float> dense,

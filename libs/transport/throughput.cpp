@@ -142,4 +142,14 @@ void SpectralThroughputs::settle(uint32_t p) {
   c.scale = 1, c.t = T;
 }
 
+void SpectralThroughputs::shine_now(uint32_t p, const Factor& factor, float scale, const float* radiance,
+                                    std::span<const float> s, uint16_t target) {
+  settle(p);
+  const float* const T = &throughput_[size_t{p} * stride_];
+  float* const L = &light_[(size_t{p} * targets_ + target) * stride_];
+  for (size_t k = 0; k < bins_; ++k)
+    L[k] +=
+        factor.scale * scale * (factor.spectrum ? factor.spectrum[k] : 1) * (radiance ? radiance[k] : 1) * s[k] * T[k];
+}
+
 }  // namespace suite

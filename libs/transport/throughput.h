@@ -84,6 +84,11 @@ class SpectralThroughputs {
     return {&throughput_[size_t{p} * stride_], bins_};
   }
 
+ protected:
+  // L[target] += scale factor radiance s T at once, s one value a bin that need not stay.
+  void shine_now(uint32_t p, const Factor& factor, float scale, const float* radiance, std::span<const float> s,
+                 uint16_t target);
+
  private:
   static constexpr uint32_t kSteps = 16;
   static constexpr uint16_t kTurn = 0xfffe;  // target of steps that change T

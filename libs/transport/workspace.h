@@ -5,6 +5,7 @@
 
 #include "transport/pipeline.h"
 #include "transport/sinks/radiance.h"
+#include "transport/sinks/stokes.h"
 
 namespace suite {
 
@@ -20,6 +21,7 @@ struct Pipeline::Workspace {
             size_t groups, const ChannelPlan& channels, bool lost);
   // Whether it is what would be made for a capture with channels.
   bool serves(const Capture& capture, const ChannelPlan& channels) const;
+  std::unique_ptr<PathTracing> make();
   // The kernel that serves a ray: what was chosen for the state, or, for rays that start at receivers, a general one.
   PathTracing& kernel_of(const SensorRay& ray);
 
@@ -28,7 +30,10 @@ struct Pipeline::Workspace {
   KernelContext context;
   size_t width, groups;
   RadianceSink sink;
-  SpectralThroughputs throughputs;
+  StokesSink stokes_sink;
+  std::unique_ptr<SpectralThroughputs> plain;  // one of the two
+  std::unique_ptr<StokesThroughputs> stokes;
+  SpectralThroughputs& throughputs;
   std::unique_ptr<PathTracing> kernel, receiving;
   std::vector<WaveLane> lanes;                 // of the wave that is being filled or run
   std::vector<std::array<double, 4>> numbers;  // [path] of the sensor

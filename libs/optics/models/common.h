@@ -23,6 +23,29 @@ inline float finite_float(double x) {
 inline bool same_side(Dir a, Dir b) { return a.z * b.z > 0; }
 inline Dir up(Dir d) { return {d.x, d.y, std::fabs(d.z)}; }
 
+// The matrix of a model that depolarises by its definition.
+inline ScatterModel::Polarised depolarised(std::span<Mueller> m) {
+  m[0] = Mueller::depolariser();
+  return {true, 0};
+}
+// Sums w M over the parts of a model, and gives M / m11 and what is unknown of it all.
+class MuellerSum {
+ public:
+  // Light of a matrix, of w times it, and what depolarises: by its nature, or for want of a matrix.
+  Mueller over(const Mueller& polarised, double depolarises, double not_known) {
+    const double m11 = polarised(0, 0), all = m11 + depolarises + not_known;
+    unknown_ += not_known, all_ += all;
+    if (!(all > 0) || !std::isfinite(all)) return Mueller::depolariser();
+    Mueller m = polarised * (1 / all);
+    m(0, 0) = 1;
+    return m;
+  }
+  double unknown() const { return all_ > 0 ? unknown_ / all_ : 0; }
+
+ private:
+  double unknown_ = 0, all_ = 0;
+};
+
 // Error naming `what` and the wavelength where the curves sum to more than 1.
 void require_sum_below_one(std::initializer_list<const std::vector<float>*> curves, const char* what,
                            const SpectralState& state);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "optics/fresnel.h"
+#include "optics/fresnel_mueller.h"
 #include "optics/models/common.h"
 #include "optics/models/rows.h"
 
@@ -60,6 +61,32 @@ class Dielectric final : public ScatterModel {
                        : together(k, static_cast<size_t>(knot)) ? static_cast<float>(1 - f.reflectance)
                                                                 : 0.0f;
     }
+  }
+  Polarised delta_mueller(Dir out, int lobe, int knot, std::span<Mueller> m) const override {
+    const auto at = [&](size_t k) {
+      const double c = std::min(1.0, std::fabs(out.z)), eta = ratio(out, k);
+      const Dir mirrored{-out.x, -out.y, out.z};
+      PlaneBlocks blocks = fresnel_reflection(c, eta);
+      Dir in = mirrored;
+      if (lobe != kReflect) {
+        // The plane is the same for all that goes through; the own knot's direction is that of the path.
+        const size_t own = static_cast<size_t>(knot);
+        const Fresnel f = fresnel(out, own);
+        const double bent = ratio(out, own);
+        in = normalized({-out.x / bent, -out.y / bent, out.z > 0 ? -f.cos_transmitted : f.cos_transmitted});
+        blocks = fresnel_transmission(c, eta);
+      }
+      if (!(blocks.a > 0)) return Mueller::depolariser();
+      return ScatteringPlane(out, in).matrix(blocks * (1 / blocks.a));
+    };
+    if (uniform_) {
+      m[0] = at(0);
+      return {true, 0};
+    }
+    Mueller of_knots[kMaxKnots];
+    for (size_t k = 0; k < index_.size(); ++k) of_knots[k] = at(k);
+    for (size_t i = 0; i < m.size(); ++i) m[i] = of_knots[knot_of_bin_[i]];
+    return {false, 0};
   }
   bool has_delta() const override { return true; }
   bool spectrally_uniform_shape() const override { return uniform_; }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "optics/fresnel.h"
+#include "optics/fresnel_mueller.h"
 #include "optics/models/common.h"
 #include "optics/models/facet_tables.h"
 
@@ -25,6 +26,7 @@ namespace suite {
 struct FacetColour {
   std::vector<float> f0, n, k;
   bool indexed() const { return *std::max_element(n.begin(), n.end()) > 0; }
+  PlaneBlocks polarised(double c, size_t bin) const { return fresnel_reflection(c, {n[bin], k[bin]}); }
   double reflectance(double c, size_t bin) const {
     return n[bin] > 0 ? fresnel_conductor(c, n[bin], k[bin]) : fresnel_schlick(c, f0[bin]);
   }
@@ -45,7 +47,8 @@ class FacetMirror {
         bins_(colour_.f0.size()),
         facets_(facets),
         tables_(FacetTables<Facets>::of({facets.ax, facets.ay})),
-        uniform_(colour_.uniform()) {
+        uniform_(colour_.uniform()),
+        indexed_(colour_.indexed()) {
     tabulate();
   }
 
@@ -61,6 +64,26 @@ class FacetMirror {
     for (size_t b = 0; b < w.size(); ++b)
       w[b] = finite_float(colour_.reflectance(c, b) * shape +
                           std::max(0.0f, from[b]) * std::max(0.0f, to[b]) * again_scale_[b] * i.z);
+  }
+  // What meets one facet by Fresnel's amplitudes, the second lobe as a depolariser of which nothing is known; Schlick's
+  // reflectance says nothing of polarisation.
+  ScatterModel::Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const {
+    m[0] = Mueller::depolariser();
+    if (!indexed_ || !same_side(out, in)) return {};
+    const Dir o = up(out), i = up(in), h = normalized(o + i);
+    const double shape = facets_.density(h) * facets_.shadowing(o, i) / (4 * o.z), c = std::min(1.0, dot(o, h));
+    thread_local std::vector<float> from, to;
+    from.resize(m.size());
+    to.resize(m.size());
+    again_.at(o, from);
+    again_.at(i, to);
+    const ScatteringPlane plane(out, in);
+    MuellerSum sum;
+    for (size_t b = 0; b < (uniform_ ? 1 : m.size()); ++b) {
+      const double again = std::max(0.0f, from[b]) * std::max(0.0f, to[b]) * again_scale_[b] * i.z;
+      m[b] = sum.over(plane.matrix(colour_.polarised(c, b) * shape), 0, again);
+    }
+    return {uniform_, sum.unknown()};
   }
   void total(Dir out, std::span<float> W) const {
     if (out.z == 0) return zero(W);
@@ -131,7 +154,7 @@ class FacetMirror {
   std::vector<double> again_scale_;  // 1 / integral of again_ times cosine
   Facets facets_;
   std::shared_ptr<const FacetTables<Facets>> tables_;
-  bool uniform_ = false;
+  bool uniform_ = false, indexed_ = false;
   DirectionalTable total_, again_;  // again_: share of the second lobe
 };
 

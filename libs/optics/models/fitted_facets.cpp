@@ -4,6 +4,7 @@
 
 #include "math/warps.h"
 #include "optics/fresnel.h"
+#include "optics/fresnel_mueller.h"
 #include "optics/models/ground.h"
 
 namespace suite {
@@ -109,6 +110,18 @@ void FittedFacets::eval(Dir out, Dir in, std::span<float> w) const {
   for (size_t i = 0; i < w.size(); ++i)
     w[i] = finite_float(cosine * (pair.facets * fresnel_conductor(pair.cos_beta, n_[i], k_[i]) + diffuse_[i] / kPi +
                                   2 * volume_[i] / pair.sum));
+}
+
+ScatterModel::Polarised FittedFacets::mueller(Dir out, Dir in, std::span<Mueller> m) const {
+  if (!same_side(out, in)) return depolarised(m);
+  const Pair pair(rule_, up(out), up(in));
+  const ScatteringPlane plane(out, in);
+  MuellerSum sum;
+  for (size_t i = 0; i < m.size(); ++i) {
+    const PlaneBlocks facets = fresnel_reflection(pair.cos_beta, {n_[i], k_[i]}) * pair.facets;
+    m[i] = sum.over(plane.matrix(facets), diffuse_[i] / kPi + 2 * volume_[i] / pair.sum, 0);
+  }
+  return {m.size() == 1, 0};
 }
 
 void FittedFacets::total(Dir out, std::span<float> W) const {

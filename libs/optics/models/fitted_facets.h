@@ -30,6 +30,8 @@ class FittedFacets final : public ScatterModel {
   void total(Dir out, std::span<float> W) const override;
   std::optional<Sample> sample(Dir out, Vec2 u, double lobe_u, int knot) const override;
   void pdf(Dir out, Dir in, std::span<float> p) const override;
+  // Facets by Fresnel's amplitudes; what comes from below depolarises.
+  Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const override;
 
  private:
   struct Pair;  // of directions: what does not depend on the wavelength

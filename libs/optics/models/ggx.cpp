@@ -36,6 +36,7 @@ class GgxConductor final : public ScatterModel {
     return mirror_.sample(out, u, lobe_u, knot);
   }
   void pdf(Dir out, Dir in, std::span<float> p) const override { mirror_.pdf(out, in, p); }
+  Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const override { return mirror_.mueller(out, in, m); }
   bool spectrally_uniform_shape() const override { return mirror_.spectrally_uniform_shape(); }
   bool isotropic() const override { return mirror_.isotropic(); }
 

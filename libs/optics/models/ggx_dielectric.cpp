@@ -17,6 +17,7 @@
 #include <cmath>
 
 #include "optics/fresnel.h"
+#include "optics/fresnel_mueller.h"
 #include "optics/microfacet.h"
 #include "optics/models/common.h"
 #include "optics/models/polar_lobe.h"
@@ -131,6 +132,32 @@ class GgxDielectric final : public ScatterModel {
       p[k] = finite_float((1 - a.missed) * drawn_once(out, in, ratio(out, place.index)) +
                           (reflect ? back : a.missed - back) * drawn_again);
     }
+  }
+  // What meets one facet by Fresnel's amplitudes; the second lobe depolarises for want of a matrix.
+  Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const override {
+    m[0] = Mueller::depolariser();
+    if (out.z == 0 || in.z == 0) return {};
+    const bool reflected = same_side(out, in);
+    const Dir o = up(out), i = up(in), h = reflected ? normalized(o + i) : o;
+    const double shape = reflected ? facets_.density(h) * facets_.shadowing(o, i) / (4 * o.z) : 0;
+    const auto shadowing = reflected ? RoughInterface::Shadowing{} : RoughInterface::shadowing_across(facets_, o, i);
+    Lookup from(*this, out), to(*this, in);
+    const ScatteringPlane plane(out, in);
+    MuellerSum sum;
+    for (size_t b = 0; b < (uniform_ ? 1 : m.size()); ++b) {
+      const Place& p = places_[b];
+      const double eta = ratio(out, p.index);
+      PlaneBlocks once = PlaneBlocks::of(0, 0, 0, 0);
+      if (reflected) {
+        once = fresnel_reflection(std::min(1.0, dot(o, h)), eta) * shape;
+      } else if (const auto r = refraction(out, in, eta); r && r->transmittance > 0) {
+        once = fresnel_transmission(std::min(1.0, dot(o, r->h)), eta) *
+               (transmitted(out, in, eta) * shadowing.at(p.straight) / r->transmittance);
+      }
+      const double again = (reflected ? again_reflected(from, to, p) : again_passed(from, to, p)) * i.z;
+      m[b] = sum.over(plane.matrix(once), 0, again);
+    }
+    return {uniform_, sum.unknown()};
   }
   bool spectrally_uniform_shape() const override { return uniform_; }
   bool opaque() const override { return false; }

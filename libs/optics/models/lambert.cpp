@@ -59,6 +59,7 @@ class Lambert final : public ScatterModel {
   bool spectrally_uniform_shape() const override { return uniform_; }
   bool single_lobe() const override { return opaque_; }
   const float* diffuse() const override { return opaque_ ? rho_.data() : nullptr; }
+  Polarised mueller(Dir, Dir, std::span<Mueller> m) const override { return depolarised(m); }
   bool opaque() const override { return opaque_; }
 
  private:

@@ -53,6 +53,7 @@ class Leaf final : public ScatterModel {
     }
   }
   bool spectrally_uniform_shape() const override { return uniform_; }
+  Polarised mueller(Dir, Dir, std::span<Mueller> m) const override { return depolarised(m); }
   bool opaque() const override { return opaque_; }
 
  private:

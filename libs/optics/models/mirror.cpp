@@ -24,6 +24,11 @@ class Mirror final : public ScatterModel {
     std::copy_n(rho_.begin(), weight.size(), weight.begin());
   }
   void delta_probability(Dir, int, int, std::span<float> p) const override { std::fill(p.begin(), p.end(), 1.0f); }
+  // Of a perfect conductor: p and s reflect alike, in opposite phase.
+  Polarised delta_mueller(Dir out, int, int, std::span<Mueller> m) const override {
+    m[0] = ScatteringPlane(out, {-out.x, -out.y, out.z}).matrix(PlaneBlocks::of(1, 0, -1, 0));
+    return {true, 0};
+  }
   bool has_delta() const override { return true; }
   bool single_lobe() const override { return true; }
   bool spectrally_uniform_shape() const override { return true; }

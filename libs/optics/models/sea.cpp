@@ -97,6 +97,25 @@ class Sea final : public ScatterModel {
     const double diffuse = same_side(out, in) ? share_ * std::fabs(in.z) / kPi : 0;
     for (float& x : p) x = finite_float((1 - share_) * x + diffuse);
   }
+  // The glitter as facet_mirror.h has it; whitecaps and what comes from below depolarise.
+  Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const override {
+    m[0] = Mueller::depolariser();
+    if (!same_side(out, in)) return {true, 0};
+    thread_local std::vector<float> all, glitter;
+    all.resize(m.size()), glitter.resize(m.size());
+    eval(out, in, all);
+    mirror_.eval(out, in, glitter);
+    const Polarised of = mirror_.mueller(out, in, m);
+    double sum = 0, mirrored = 0;
+    for (size_t i = m.size(); i-- > 0;) {
+      const double part = (1 - white_) * double{glitter[i]};
+      const Mueller one = m[of.grey ? 0 : i];
+      sum += all[i], mirrored += part;
+      m[i] = Mueller::depolariser();
+      if (all[i] > 0) m[i] = m[i] * (1 - part / all[i]) + one * (part / all[i]);
+    }
+    return {m.size() == 1, sum > 0 ? of.unknown * mirrored / sum : 0};
+  }
   bool spectrally_uniform_shape() const override { return uniform_; }
   bool isotropic() const override { return mirror_.isotropic(); }
 

@@ -15,6 +15,8 @@ class Rayleigh final : public PhaseFunction {
   Rayleigh(const ModelSpec& spec, const SpectralState&) {
     const double depolarisation = spec.numbers.at("depolarisation");
     gamma_ = depolarisation / (2 - depolarisation);
+    delta_ = (1 - depolarisation) / (1 + depolarisation / 2);
+    turning_ = (1 - 2 * depolarisation) / (1 - depolarisation);
   }
   void eval(double c, std::span<float> p) const override { std::fill(p.begin(), p.end(), value(c)); }
   void pdf(double c, std::span<float> p) const override { std::fill(p.begin(), p.end(), value(c)); }
@@ -25,13 +27,19 @@ class Rayleigh final : public PhaseFunction {
     return std::clamp(root, -1.0, 1.0);
   }
   void asymmetry(std::span<float> g) const override { std::fill(g.begin(), g.end(), 0.0f); }
+  // Hansen & Travis, "Light scattering in planetary atmospheres", Space Sci. Rev. 16, 1974, equations 2.15-2.16.
+  ScatterModel::Polarised polarised(double c, std::span<PlaneBlocks> b) const override {
+    const double along = 0.75 * delta_ * (1 + c * c), turned = 1.5 * delta_ * c, all = along + 1 - delta_;
+    b[0] = PlaneBlocks{all, -0.75 * delta_ * (1 - c * c), turned, 0, along, turned * turning_} * (1 / all);
+    return {true, 0};
+  }
   bool spectrally_uniform() const override { return true; }
 
  private:
   float value(double c) const {
     return static_cast<float>(3 / (16 * kPi * (1 + 2 * gamma_)) * (1 + 3 * gamma_ + (1 - gamma_) * c * c));
   }
-  double gamma_;
+  double gamma_, delta_, turning_;
 };
 
 }  // namespace

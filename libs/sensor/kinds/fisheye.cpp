@@ -14,6 +14,8 @@ class Fisheye final : public SimpleSensor {
   Fisheye(const Params& p, const SensorContext& context) : SimpleSensor(p, context, "fisheye") {
     wishes_ = read_wishes(p, truth_);
     channels_ = read_channels(p);
+    polarimetry_ = read_polarimetry(p, channels_);
+    if (polarimetry_) polarimetry_->up = {0, 1, 0};
     capture_.columns = capture_.rows = static_cast<uint32_t>(p.integer("size", 1, 100000));
     const auto [x, y, z] = p.at("position_m").as_vec3();
     position_ = {x, y, z};

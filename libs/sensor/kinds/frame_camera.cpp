@@ -7,6 +7,7 @@
 #include "math/vec.h"
 #include "sensor/kinds/rows.h"
 #include "sensor/point_images.h"
+#include "sensor/polarimetry.h"
 
 namespace suite {
 
@@ -21,6 +22,7 @@ class FrameCamera final : public Sensor, public SeesPoints {
     truth_ = read_truth(p);
     wishes_ = read_wishes(p, truth_);
     channels_ = read_channels(p);
+    polarimetry_ = read_polarimetry(p, channels_);
 
     Capture capture;
     capture.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
@@ -45,6 +47,7 @@ class FrameCamera final : public Sensor, public SeesPoints {
     if (!(length(right_) > 1e-9 * length(up))) throw p.error("`up` runs along the view direction", "give another `up`");
     right_ = normalized(right_);
     down_ = cross(forward_, right_);
+    if (polarimetry_) polarimetry_->up = -down_;
     capture.name = name_;
     capture.window = read_window(p);
     capture.convergence = read_convergence(p);
@@ -97,10 +100,15 @@ class FrameCamera final : public Sensor, public SeesPoints {
   void accept(CaptureResult&& result) override {
     Delivery d{*this, lay_out(tasks_, name_)[result.task][result.capture], std::move(result), bands_, {}, {}, {}, {}};
     if (points_) d.texts.push_back({name_ + "_stars.csv", points_table(*points_, bands_)});
+    if (polarimetry_) {
+      add_polarisation(d);
+      d.description = text_of(*polarimetry_);
+    }
     deliver_(d);
   }
   std::span<const std::string> truth() const override { return truth_; }
   std::span<const std::string> channels() const override { return channels_; }
+  const Polarimetry* polarimetry() const override { return polarimetry_ ? &*polarimetry_ : nullptr; }
   ImageWishes wishes(const Capture&) const override { return wishes_; }
 
  private:
@@ -109,6 +117,7 @@ class FrameCamera final : public Sensor, public SeesPoints {
   std::vector<Band> bands_;
   std::vector<std::string> truth_, channels_;
   ImageWishes wishes_;
+  std::optional<Polarimetry> polarimetry_;
   SpectralState state_;
   std::vector<Task> tasks_;
   Vec3 position_, forward_, right_, down_;

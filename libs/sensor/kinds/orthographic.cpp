@@ -10,6 +10,8 @@ class Orthographic final : public SimpleSensor {
   Orthographic(const Params& p, const SensorContext& context) : SimpleSensor(p, context, "map") {
     wishes_ = read_wishes(p, truth_);
     channels_ = read_channels(p);
+    polarimetry_ = read_polarimetry(p, channels_);
+    if (polarimetry_) polarimetry_->up = {0, 1, 0};
     capture_.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
     capture_.rows = static_cast<uint32_t>(p.integer("rows", 1, 100000));
     const double gsd = p.number_in("gsd_m", 1e-6, 1e6, "m");

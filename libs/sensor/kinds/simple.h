@@ -2,6 +2,7 @@
 #pragma once
 #include "math/warps.h"
 #include "sensor/kinds/rows.h"
+#include "sensor/polarimetry.h"
 
 namespace suite {
 
@@ -26,8 +27,13 @@ class SimpleSensor : public Sensor {
   std::span<const std::string> truth() const override { return truth_; }
   std::span<const std::string> channels() const override { return channels_; }
   ImageWishes wishes(const Capture&) const override { return wishes_; }
+  const Polarimetry* polarimetry() const override { return polarimetry_ ? &*polarimetry_ : nullptr; }
   void accept(CaptureResult&& result) override {
     Delivery d{*this, lay_out(tasks_, name_)[0][0], std::move(result), bands_, {}, {}, {}, {}};
+    if (polarimetry_) {
+      add_polarisation(d);
+      d.description = text_of(*polarimetry_);
+    }
     finish(d);
     deliver_(d);
   }
@@ -45,6 +51,7 @@ class SimpleSensor : public Sensor {
   std::vector<std::string> truth_;
   ImageWishes wishes_;  // read by the kinds that make pictures of radiance, with
   std::vector<std::string> channels_{"radiance"};
+  std::optional<Polarimetry> polarimetry_;  // likewise
   std::vector<SpectralState> states_;
   Capture capture_;
   std::vector<Task> tasks_;

@@ -224,6 +224,35 @@ Factor FieldSpace::evaluate(uint32_t p, double cosine, std::span<float> v) {
   return {1, v.data()};
 }
 
+ScatterModel::Polarised FieldSpace::mueller(uint32_t p, Dir out, Dir in, std::span<Mueller> m) const {
+  thread_local std::vector<PlaneBlocks> one, sum;
+  thread_local std::vector<float> phase, whole;
+  one.resize(m.size()), phase.resize(m.size());
+  sum.assign(m.size(), PlaneBlocks{0, 0, 0, 0, 0, 0}), whole.assign(m.size(), 0.0f);
+  const double cosine = scattering_cosine(out, in);
+  const ScatterPlace& e = events_[p];
+  double unknown = 0, all = 0;
+  bool grey = e.contents.size() == 1;
+  for (const Constituent& c : e.contents) {
+    const BakedMedium& medium = optics_.media()[c.medium];
+    if (!medium.scatters()) continue;
+    const bool uniform = one_phase_[c.medium];
+    medium.phase->eval(cosine, uniform ? std::span(phase).first(1) : std::span(phase));
+    const auto of = medium.phase->polarised(cosine, one);
+    grey = grey && of.grey;
+    for (size_t i = 0; i < m.size(); ++i) {
+      const float mine = static_cast<float>(c.density) * medium.scattering[i] * phase[uniform ? 0 : i];
+      sum[i] = sum[i] + one[of.grey ? 0 : i] * double{mine};
+      whole[i] += mine, all += mine, unknown += of.unknown * mine;
+    }
+    if (grey) sum[0] = one[0], whole[0] = 1;
+  }
+  const ScatteringPlane plane(out, in);
+  for (size_t i = 0; i < (grey ? 1 : m.size()); ++i)
+    m[i] = whole[i] > 0 ? plane.matrix(sum[i] * (1 / double{whole[i]})) : Mueller::depolariser();
+  return {grey || m.size() == 1, all > 0 ? unknown / all : 0};
+}
+
 bool FieldSpace::scatter(uint32_t p, Dir out, int knot, Vec2 u, double who, Dir& in) const {
   const ScatterPlace& e = events_[p];
   const size_t own = optics_.state().knots[static_cast<size_t>(knot)];

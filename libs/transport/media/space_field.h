@@ -77,6 +77,8 @@ class FieldSpace {
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;
   // v; dense: memory for a spectrum.
   Factor evaluate(uint32_t p, double cosine, std::span<float> dense);
+  // Mueller matrices over m11 of light from `in`, in the world.
+  ScatterModel::Polarised mueller(uint32_t p, Dir out, Dir in, std::span<Mueller> m) const;
   // Draws a direction. who: number that chooses the scatterer. Nothing when nothing scatters.
   bool sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense, Continuation& on);
   // Its direction alone, when seen from `out`; the density is that of densities().

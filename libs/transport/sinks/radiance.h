@@ -21,6 +21,13 @@ class RadianceSink final : public Sink<SpectralThroughputs> {
     return ((lost ? channels_.size() : 0) + channel) * groups_ + group;
   }
   const ChannelPlan& channels() const { return channels_; }
+  // Which light is told apart; whether it is lost, which is then noted.
+  size_t group(const Contribution& c) const { return groups_ == 1 ? 0 : c.light; }
+  bool note(const Contribution& c) {
+    if (c.arrived()) return false;
+    missed_[c.path] = std::min(missed_[c.path], double{c.missed});
+    return true;
+  }
   void begin(uint32_t p) { missed_[p] = kNothing; }
   // Of the light that a path has missed, the least chance of having met it; infinite where there is none.
   double missed(uint32_t p) const { return missed_[p]; }
@@ -28,9 +35,8 @@ class RadianceSink final : public Sink<SpectralThroughputs> {
 
   void add(std::span<const Contribution> stage, SpectralThroughputs& throughputs) override {
     for (const Contribution& c : stage) {
-      const size_t group = groups_ == 1 ? 0 : c.light;
-      const bool lost = !c.arrived();
-      if (lost) missed_[c.path] = std::min(missed_[c.path], double{c.missed});
+      const size_t group = this->group(c);
+      const bool lost = note(c);
       const auto to = [&](size_t channel) { return static_cast<uint16_t>(target(group, channel, lost)); };
       // What a channel takes whole goes there with the radiance; most results have one channel or two.
       size_t with = 1;

@@ -298,5 +298,48 @@ TEST_F(SensorOutput, AnUnknownTruthIsNamed) {
   EXPECT_FALSE(there("bad/map.img"));
 }
 
+// Stokes vectors: bands of their own, a frame that the header says, and what follows from them beside the image.
+TEST_F(SensorOutput, StokesVectorsHaveBandsOfTheirOwn) {
+  const std::string camera =
+      "sensors:\n  - {kind: frame_camera, name: eye, columns: 4, rows: 3, pitch_um: 10, focal_length_mm: 10, "
+      "position_m: "
+      "[0, -30, 20], look_at_m: [0, 0, 0], paths: 16, " +
+      kBand + ", ";
+  render(camera + "stokes: linear, stokes_frame: image}\n", "stokes");
+  const EnviHeader image = EnviImage(*folder_ / "stokes/eye.img").header();
+  EXPECT_THAT(image.band_names, testing::ElementsAre("pan I", "pan Q", "pan U", "pan depolarised"));
+  EXPECT_THAT(image.description, HasSubstr("+Q up in the picture"));
+  const EnviHeader of = EnviImage(*folder_ / "stokes/eye_polarisation.img").header();
+  EXPECT_THAT(of.band_names, testing::ElementsAre("pan dolp", "pan dolp_error", "pan dolp_debiased", "pan aolp",
+                                                  "pan aolp_error", "pan aolp_undefined", "pan depolarised_share"));
+  EXPECT_TRUE(there("stokes/eye_error.img"));
+  const auto refused = [&](const std::string& text, const std::string& out) {
+    const CommandResult r = ProgramsTest::render(kLight + text, out);
+    EXPECT_NE(r.code, 0);
+    return r.err;
+  };
+  EXPECT_THAT(refused("output: {type: uint16, scale: 0.1}\n" + camera + "stokes: linear}\n", "counts"),
+              HasSubstr("Q, U and V have signs"));
+  EXPECT_THAT(refused(camera + "stokes: linear, units: brightness_temperature}\n", "warm"),
+              HasSubstr("Q, U and V are no light that has a temperature"));
+  EXPECT_THAT(refused("atmosphere: {scene_height_m: 0}\n" + camera + "stokes: linear}\n", "air"),
+              HasSubstr("sees polarisation, and the light of this air is known without it"));
+}
+// Grooves have no Mueller matrix: all of what is seen counts as depolarised, which is said.
+TEST_F(SensorOutput, LightOfUnknownPolarisationIsToldOf) {
+  prepare(
+      "scene: 1\nmaterials:\n  ground: {model: oren_nayar, reflectance: 0.2, sigma: 0.3}\nobjects:\n  plane: {plane: "
+      "{width: 40, depth: 40}, material: ground}\nworld:\n  - {place: plane}\n",
+      "grooves");
+  const std::string text =
+      "scene: grooves.h5\nsun: {direction: {zenith_deg: 45, azimuth_deg: 90}, irradiance: 1000}\nsensors:\n  - "
+      "{kind: orthographic, columns: 2, rows: 2, gsd_m: 1, center_m: [0, 0], paths: 16, stokes: linear, " +
+      kBand + "}\n";
+  write_file(*folder_ / "unknown.yaml", std::string_view(text));
+  const CommandResult r = run("dirsig-render unknown.yaml -o unknown");
+  EXPECT_EQ(r.code, 0);
+  EXPECT_THAT(r.err, testing::AllOf(HasSubstr("[DR209]"), HasSubstr("100.0 % of the light")));
+}
+
 }  // namespace
 }  // namespace suite

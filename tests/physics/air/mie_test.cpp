@@ -131,5 +131,27 @@ TEST(Mie, RefusesWhatIsNoSphere) {
   EXPECT_NO_THROW(MieSphere(1e-6, {1.5, 0}));
 }
 
+// Scattering matrices in Bohren & Huffman's sign, computed apart in double precision; printed to 8 digits.
+TEST(Mie, MatricesAgreeWithTheTable) {
+  std::ifstream file(SUITE_TEST_DATA "/polarisation/mie_sphere.csv");
+  int rows = 0;
+  for (std::string line; std::getline(file, line);) {
+    double v[10];
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", v, v + 1, v + 2, v + 3, v + 4, v + 5,
+                    v + 6, v + 7, v + 8, v + 9) != 10)
+      continue;
+    const MieSphere sphere(v[0], {v[1], v[2]});
+    const double c = std::cos(v[5] * kDegree);
+    const PlaneBlocks b = sphere.polarised(c);
+    EXPECT_NEAR(4 * kPi * sphere.phase(c), v[6], 2e-8 * std::max(1.0, v[6]));
+    EXPECT_NEAR(b.b, v[7], 2e-8) << v[0] << ' ' << v[5];
+    EXPECT_NEAR(b.c, v[8], 2e-8) << v[0] << ' ' << v[5];
+    EXPECT_NEAR(b.d, v[9], 2e-8) << v[0] << ' ' << v[5];
+    EXPECT_GT(least_coherency(b.matrix()), -1e-12);
+    ++rows;
+  }
+  EXPECT_EQ(rows, 52);
+}
+
 }  // namespace
 }  // namespace suite

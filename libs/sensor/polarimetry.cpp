@@ -1,0 +1,140 @@
+#include "sensor/polarimetry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensor/sensors.h"
+
+namespace suite {
+
+namespace {
+
+void read_components(const Params& stokes, std::vector<std::string>& add) {
+  std::vector<std::string> names;
+  if (stokes.kind() == Params::Kind::list) {
+    for (const Params& item : stokes.items()) {
+      static const std::vector<std::string> known{"i", "q", "u", "v"};
+      names.push_back(known[item.as_choice(known)]);
+      if (std::count(names.begin(), names.end(), names.back()) > 1)
+        throw item.error("the component '" + names.back() + "' is listed twice");
+    }
+    if (std::find(names.begin(), names.end(), "i") == names.end())
+      throw stokes.error("the intensity is missing", "give [i, q, u], [i, q, u, v] or linear");
+  } else {
+    stokes.as_choice({"linear"});
+    names = {"i", "q", "u"};
+  }
+  for (const char* component : {"q", "u", "v"})
+    if (std::find(names.begin(), names.end(), component) != names.end())
+      add.push_back(std::string("stokes_") + component);
+}
+
+// A polarizer, and a retarder before it.
+Mueller read_analyser(const Params& p) {
+  const double angle = p.number_in("polarizer_deg", -360, 360, "degrees") * kDegree;
+  const double extinction = p.number_in("extinction", 1, 1e12, "", 1e12);
+  Mueller m = polarizer(angle, p.find("extinction") ? 1 / extinction : 0);
+  const auto phase = p.find("retarder_deg");
+  if (phase) {
+    m = m * retarder(p.number_in("axis_deg", -360, 360, "degrees") * kDegree,
+                     phase->as_number_in(-360, 360, "degrees") * kDegree);
+  } else if (const auto axis = p.find("axis_deg")) {
+    throw axis->error("there is no retarder", "give retarder_deg, too");
+  }
+  return m;
+}
+
+}  // namespace
+
+std::optional<Polarimetry> read_polarimetry(const Params& params, std::vector<std::string>& channels) {
+  const auto stokes = params.find("stokes"), analyser = params.find("analyser"), frame = params.find("stokes_frame");
+  if (!stokes && !analyser) {
+    if (frame) throw frame->error("nothing is measured in this frame", "give `stokes` or `analyser`, too");
+    return std::nullopt;
+  }
+  Polarimetry how;
+  std::vector<std::string> add;
+  if (stokes) read_components(*stokes, add);
+  add.push_back("depolarised");
+  for (const std::string& name : add)
+    if (std::find(channels.begin(), channels.end(), name) != channels.end())
+      throw params.error("`stokes` has the channel '" + name + "' already");
+  channels.insert(channels.begin() + 1, add.begin(), add.end());
+  if (frame) how.frame = static_cast<StokesFrame>(frame->as_choice({"meridian", "image", "scattering_plane"}));
+  if (analyser) how.analyser = read_analyser(*analyser);
+  return how;
+}
+
+LinearPolarisation linear_polarisation(const double (&S)[3], const double (&C)[6]) {
+  const auto [I, Q, U] = S;
+  LinearPolarisation r{NAN, NAN, NAN, NAN, NAN, true};
+  if (!(I > 0)) return r;
+  const double P = std::hypot(Q, U), p = P / I;
+  // Along (Q, U) and across; where both are 0 any direction will do.
+  const double c = P > 0 ? Q / P : 1, s = P > 0 ? U / P : 0;
+  const double along = c * c * C[3] + 2 * c * s * C[4] + s * s * C[5],
+               across = s * s * C[3] - 2 * c * s * C[4] + c * c * C[5], with = c * C[1] + s * C[2];
+  r.degree = p;
+  r.degree_error = std::sqrt(std::max(0.0, along - 2 * p * with + p * p * C[0])) / I;
+  const double b2 = std::max(0.5 * (along + across), 0.0) / (I * I);
+  r.debiased = p > 0 && b2 > 0 ? p - b2 * -std::expm1(-p * p / b2) / (2 * p) : p;
+  r.angle = std::fmod(0.5 * std::atan2(U, Q) / kDegree + 180, 180.0);
+  r.angle_error = P > 0 ? 0.5 * std::sqrt(std::max(0.0, across)) / P / kDegree : INFINITY;
+  r.undefined = !(p >= 3 * r.degree_error && P > 0);
+  return r;
+}
+
+namespace {
+
+size_t channel_of(const Sensor& sensor, const char* name) {
+  const auto channels = sensor.channels();
+  return static_cast<size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin());
+}
+
+// Variances as the errors have them, correlations as the groups of samples do.
+void covariances(const CaptureResult& r, size_t problem, size_t band, const double (&error)[3], double (&C)[6]) {
+  const double* const raw = &r.stokes_covariance[(problem * r.bands + band) * 6];
+  const double diagonal[3] = {raw[0], raw[3], raw[5]};
+  for (size_t a = 0, at = 0; a < 3; ++a)
+    for (size_t b = a; b < 3; ++b, ++at) {
+      const double size = std::sqrt(diagonal[a] * diagonal[b]);
+      C[at] = a == b ? error[a] * error[a] : size > 0 ? raw[at] / size * error[a] * error[b] : 0;
+    }
+}
+
+}  // namespace
+
+void add_polarisation(Delivery& d) {
+  const CaptureResult& r = d.result;
+  const size_t q = channel_of(d.sensor, "stokes_q"), u = channel_of(d.sensor, "stokes_u"),
+               lost = channel_of(d.sensor, "depolarised");
+  if (q >= r.channels || u >= r.channels || r.bins != 1 || r.stokes_covariance.empty()) return;
+  Product product{"polarisation", "1, or degrees of angles", false, {}, {}};
+  for (const Band& b : d.bands)
+    for (const char* what :
+         {" dolp", " dolp_error", " dolp_debiased", " aolp", " aolp_error", " aolp_undefined", " depolarised_share"})
+      product.bands.push_back(b.name + what);
+  for (size_t i = 0; i < r.problems(); ++i)
+    for (size_t b = 0; b < r.bands; ++b) {
+      const auto at = [&](size_t channel) { return (i * r.channels + channel) * r.bands + b; };
+      const double S[3] = {r.radiance[at(0)], r.radiance[at(q)], r.radiance[at(u)]};
+      const double error[3] = {r.standard_error[at(0)], r.standard_error[at(q)], r.standard_error[at(u)]};
+      double C[6];
+      covariances(r, i, b, error, C);
+      const LinearPolarisation p = linear_polarisation(S, C);
+      const double share = lost < r.channels && S[0] > 0 ? r.radiance[at(lost)] / S[0] : 0;
+      product.values.insert(product.values.end(), {p.degree, p.degree_error, p.debiased, p.angle, p.angle_error,
+                                                   p.undefined ? 1.0 : 0.0, share});
+    }
+  d.products.push_back(std::move(product));
+}
+
+std::string text_of(const Polarimetry& how) {
+  const char* const frames[] = {"+Q in the plane of the vertical and the ray", "+Q up in the picture",
+                                "+Q in the plane of the sun and the ray"};
+  return std::string("Stokes vectors: ") + frames[static_cast<size_t>(how.frame)] +
+         ", +U half-way on counter-clockwise and +V turning so, as the receiver sees it" +
+         (how.analyser ? "; radiance is the intensity behind the analyser" : "");
+}
+
+}  // namespace suite

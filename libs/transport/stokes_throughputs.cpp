@@ -1,0 +1,61 @@
+#include "transport/stokes_throughputs.h"
+
+#include <algorithm>
+
+namespace suite {
+
+StokesThroughputs::StokesThroughputs(size_t width, size_t bins, size_t targets)
+    : SpectralThroughputs(width, bins, targets),
+      rows_(width * bins),
+      grey_(width, 1),
+      unknown_(width),
+      spectrum_(4 * bins) {}
+
+void StokesThroughputs::begin_rows(uint32_t p, const Mueller& sensor) {
+  rows_[p * bins()] = sensor;
+  grey_[p] = 1;
+  unknown_[p] = 0;
+}
+
+void StokesThroughputs::multiply(uint32_t p, const PolarisedEvent& event) {
+  Mueller* const rows = &rows_[p * bins()];
+  unknown_[p] = 1 - (1 - unknown_[p]) * (1 - event.unknown);
+  if (event.matrices.size() > 1 && grey_[p]) {
+    std::fill(rows + 1, rows + bins(), rows[0]);
+    grey_[p] = 0;
+  }
+  const bool one = event.matrices.size() == 1;
+  for (size_t b = 0; b < (grey_[p] ? 1 : bins()); ++b) rows[b] = rows[b] * event.matrices[one ? 0 : b];
+}
+
+// R times what arrives over its intensity, where lights are unpolarised.
+Stokes StokesThroughputs::arriving(uint32_t p, size_t bin, const Contribution& c) const {
+  const Mueller& rows = rows_[p * bins() + (grey_[p] ? 0 : bin)];
+  Stokes light{1, 0, 0, 0};
+  if (c.polarised) {
+    const Mueller& m = c.polarised->matrices[c.polarised->matrices.size() == 1 ? 0 : bin];
+    light = {m(0, 0), m(1, 0), m(2, 0), m(3, 0)};
+  }
+  return rows * light;
+}
+
+void StokesThroughputs::shine_stokes(const Contribution& c, float scale, const Targets& targets) {
+  const uint32_t p = c.path;
+  const bool grey = grey_[p] && (!c.polarised || c.polarised->matrices.size() == 1);
+  if (grey) {
+    const Stokes s = arriving(p, 0, c);
+    for (size_t k = 0; k < 4; ++k)
+      if (targets.of[k] != kNone && s[k] != 0)
+        shine(p, c.factor, scale * static_cast<float>(s[k]), c.radiance, targets.of[k]);
+    return;
+  }
+  for (size_t b = 0; b < bins(); ++b) {
+    const Stokes s = arriving(p, b, c);
+    for (size_t k = 0; k < 4; ++k) spectrum_[k * bins() + b] = static_cast<float>(s[k]);
+  }
+  for (size_t k = 0; k < 4; ++k)
+    if (targets.of[k] != kNone)
+      shine_now(p, c.factor, scale, c.radiance, {&spectrum_[k * bins()], bins()}, targets.of[k]);
+}
+
+}  // namespace suite

@@ -1,0 +1,403 @@
+// Polarisation along whole paths: closed forms, invariances, published tables.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "formats/reptran/netcdf3.h"
+#include "math/warps.h"
+#include "optics/fresnel_mueller.h"
+#include "tests/support/stokes_kit.h"
+
+namespace suite::test {
+namespace {
+
+constexpr double kSignificant = 5;  // standard errors of 4 to 8 groups: one in some thousands of tests fails by chance
+
+ModelSpec dielectric(double index) { return {"dielectric", {}, {{"index", Curve::constant(index)}}, {}, nullptr}; }
+ModelSpec metal(double roughness) {
+  return {"ggx", {{"roughness", roughness}}, {{"n", Curve::constant(1.39)}, {"k", Curve::constant(7.65)}}, {}, nullptr};
+}
+SourceSpecs sky(bool full_sphere) {
+  SourceSpecs sources;
+  sources.add(uniform_sky(1, full_sphere));
+  return sources;
+}
+// Looks at the origin along an angle from the vertical, from the side of -x turned about z.
+Ray towards_origin(double angle, double azimuth = 0) {
+  const Dir d = dir_from_angles(kPi - angle, azimuth);
+  return {Vec3{} - d * 5, d, 0};
+}
+void expect_near(const StokesSeen& seen, const Stokes& wanted, double tolerance) {
+  for (size_t c = 0; c < 4; ++c)
+    EXPECT_NEAR(seen.S[c], wanted[c], tolerance + kSignificant * seen.error[c]) << "IQUV"[c];
+}
+
+const double kBrewster = std::atan(1.5);
+
+// Glass over nothing, under an even sky: (R_p + R_s)/2 of it, polarised across the plane of incidence (Born & Wolf,
+// section 1.5). What is refracted goes down into the dark.
+TEST(Stokes, GlassReflectsAsFresnelSays) {
+  const auto scene = scene_of({quad(100, 0, 0)}, {material("glass", dielectric(1.5))});
+  for (const double angle : {0.0, 20 * kDegree, kBrewster, 75 * kDegree}) {
+    const PlaneBlocks F = fresnel_reflection(std::cos(angle), 1.5);
+    for (const double azimuth : {0.0, 1.0, 2.5}) {
+      const auto seen = see_stokes(scene, sky(false), {towards_origin(angle, azimuth)}, 256);
+      expect_near(seen[0], {F.a, F.b, 0, 0}, 1e-6);
+      EXPECT_NEAR(seen[0].S[1] * F.a, F.b * seen[0].S[0], 1e-6) << "the ratio has no noise";
+      EXPECT_EQ(seen[0].depolarised, 0);
+    }
+  }
+}
+// Behind a polarizer: Malus, I/2 (1 + cos 2 (angle - AoLP)) of fully polarised light; two crossed ones pass nothing,
+// and an analyser of Q = U = 0 light half of it at any angle.
+TEST(Stokes, AnalysersObeyMalus) {
+  const auto scene = scene_of({quad(100, 0, 0)}, {material("glass", dielectric(1.5))});
+  const auto whole = see_stokes(scene, sky(false), {towards_origin(kBrewster)}, 256)[0];
+  for (const double angle : {0.0, 30 * kDegree, 90 * kDegree, 135 * kDegree}) {
+    Polarimetry how;
+    how.analyser = polarizer(angle);
+    const auto seen = see_stokes(scene, sky(false), {towards_origin(kBrewster)}, 256, how)[0];
+    EXPECT_NEAR(seen.S[0], whole.S[0] * std::pow(std::cos(angle - kPi / 2), 2), 1e-7) << angle;
+  }
+  Polarimetry how;
+  how.analyser = polarizer(1) * polarizer(1 + kPi / 2);
+  EXPECT_NEAR(see_stokes(scene, sky(true), {towards_origin(0.5)}, 64, how)[0].S[0], 0, 1e-7);
+  how.analyser = polarizer(0) * polarizer(kPi / 4) * polarizer(kPi / 2);
+  EXPECT_NEAR(see_stokes(scene_of({quad(1, 50, 0)}, {material("black", lambert(0))}), sky(true),
+                         {{{0, 0, 0}, {1, 0, 0}, 0}}, 64, how)[0]
+                  .S[0],
+              0.125, 1e-6);
+}
+// Turning the camera about its axis turns the angle of polarisation and leaves the rest.
+TEST(Stokes, TheImageFrameTurnsWithTheCamera) {
+  const auto scene = scene_of({quad(100, 0, 0)}, {material("metal", metal(0.3))});
+  SourceSpecs sources;
+  sources.add(SunSpec{{dir_from_angles(0.7, 1.0), 0, Curve::constant(1)}});
+  const Ray ray = towards_origin(0.8, 0.4);
+  StokesSeen seen[2];
+  for (const int rolled : {0, 1}) {
+    Polarimetry how;
+    how.frame = StokesFrame::image;
+    const Dir k = -ray.direction;
+    const Vec3 up = normalized(Vec3{0, 0, 1} - k * k.z);
+    // 30 deg from up towards the left, counter-clockwise as the receiver sees it.
+    how.up = rotation(k, rolled * 30 * kDegree).vector(up);
+    seen[rolled] = see_stokes(scene, sources, {ray}, 64, how)[0];
+  }
+  EXPECT_GT(seen[0].dolp(), 0.02);
+  EXPECT_NEAR(seen[0].S[0], seen[1].S[0], 1e-9);
+  EXPECT_NEAR(seen[0].dolp(), seen[1].dolp(), 1e-6);
+  EXPECT_NEAR(std::remainder(seen[0].aolp_deg() - seen[1].aolp_deg() - 30, 180), 0, 1e-4);
+  EXPECT_NEAR(seen[0].S[3], seen[1].S[3], 1e-9);
+}
+// Plates placed where they are, or turned and mirrored by instances into the same place, show one Stokes vector.
+TEST(Stokes, InstancesOfOnePlateShowOneStokesVector) {
+  SourceSpecs sources;
+  sources.add(SunSpec{{dir_from_angles(0.7, 1.0), 0, Curve::constant(1)}});
+  std::vector<StokesSeen> seen;
+  const Affine3 mirrored{{-1, 0, 0, 0, 1, 0, 0, 0, 1}, {}};
+  for (const Affine3& where : {Affine3{}, rotation({0, 0, 1}, 2.0), mirrored, mirrored * rotation({0, 0, 1}, 0.3)}) {
+    auto scene = scene_of({quad(100, 0, 0)}, {material("metal", metal(0.3))});
+    scene->groups[0].placements[0].to_parent = where;
+    seen.push_back(see_stokes(scene, sources, {towards_origin(0.8, 0.4)}, 64)[0]);
+  }
+  EXPECT_GT(std::fabs(seen[0].S[2]), 1e-4);
+  for (const StokesSeen& s : seen)
+    for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(s.S[c], seen[0].S[c], 1e-6 * seen[0].S[0]) << "IQUV"[c];
+}
+// A polarised furnace: with light of radiance 1 from everywhere whatever does not absorb shows (1, 0, 0, 0), although
+// what it reflects is polarised, and what it transmits too.
+TEST(Stokes, GlassInAFurnaceIsUnpolarised) {
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {material("glass", dielectric(1.5))};
+  place(*scene, PrimitiveKind::sphere, {1}, 0);
+  check_scene(*scene, "sphere");
+  for (const double height : {0.0, 0.5, 0.9}) {
+    const auto seen = see_stokes(scene, sky(true), {{{-5, 0.1, height}, {1, 0, 0}, 0}}, 8192)[0];
+    expect_near(seen, {1, 0, 0, 0}, 1e-4);
+    EXPECT_LT(seen.error[1], 0.02);
+  }
+}
+// The same of random scenes: spheres of what keeps all light, smooth, rough and matte, that see each other. 20 scenes
+// of 24 rays by 4 components at 6 standard errors of 8 groups: by chance one in some thousands of runs fails.
+TEST(Stokes, RandomFurnacesAreUnpolarised) {
+  Pcg32 random(11);
+  const ModelSpec mirror{"mirror", {}, {{"reflectance", Curve::constant(1)}}, {}, nullptr};
+  const ModelSpec frosted{"ggx_dielectric", {{"roughness", 0.3}}, {{"index", Curve::constant(1.5)}}, {}, nullptr};
+  double largest = 0;
+  for (int world = 0; world < 20; ++world) {
+    auto scene = std::make_shared<Scene>();
+    scene->materials = {material("glass", dielectric(1 + random.uniform())), material("frosted", frosted),
+                        material("mirror", mirror), material("white", lambert(1))};
+    for (int i = 0; i < 5; ++i)
+      place(*scene, PrimitiveKind::sphere, {0.3 + 0.4 * random.uniform()}, static_cast<uint32_t>(4 * random.uniform()),
+            translation({2 * random.uniform() - 1, 2 * random.uniform() - 1, 3.0 * i - 6}));
+    check_scene(*scene, "random spheres");
+    std::vector<Ray> rays;
+    for (int i = 0; i < 24; ++i) {
+      const Vec3 at{0.6 * random.uniform() - 0.3, 0.6 * random.uniform() - 0.3, 3.0 * (i % 5) - 6};
+      const Dir d = uniform_sphere({random.uniform(), random.uniform()});
+      rays.push_back({at - d * 4, d, 0});
+    }
+    for (const StokesSeen& s : see_stokes(scene, sky(true), rays, 512))
+      for (size_t k = 0; k < 4; ++k) {
+        EXPECT_NEAR(s.S[k], k == 0 ? 1 : 0, 6 * s.error[k] + 2e-3) << "IQUV"[k] << " of world " << world;
+        largest = std::max(largest, s.error[k]);
+      }
+  }
+  EXPECT_GT(largest, 1e-3) << "samples are polarised";
+}
+// Two reflections by panes that do not lie in one plane, against the product of matrices from the
+// sensor to the light. The order matters.
+TEST(Stokes, MatricesMultiplyFromTheSensorToTheLight) {
+  const auto scene =
+      scene_of({quad(100, 0, 0), mesh_of({{3, -9, 0}, {3, 9, 0}, {6, 9, 9}, {6, -9, 9}}, {0, 2, 1, 0, 3, 2}, 1)},
+               {material("low", dielectric(1.5)), material("high", dielectric(2.4))});
+  // Down at 45 deg obliquely, then the tilted pane; then up to the sky, or down again into the dark.
+  const Dir d = normalized(Vec3{1, 0.3, -1});
+  const Dir after = {d.x, d.y, -d.z};
+  const Vec3 e1{0, 1, 0}, e2 = normalized(Vec3{3, 0, 9});
+  const Vec3 n = cross(e1, e2);
+  const Dir last = after - n * (2 * dot(after, n));
+  const PlaneBlocks F1 = fresnel_reflection(std::fabs(d.z), 1.5),
+                    F2 = fresnel_reflection(std::fabs(dot(after, n)), 2.4);
+  const Mueller M = ScatteringPlane(-d, after).matrix(F1) * ScatteringPlane(-after, last).matrix(F2);
+  SourceSpecs sources;  // a small bright disk where the chain points
+  SunSpec sun{{last, 0.02, Curve::constant(kPi * std::pow(std::sin(0.02), 2))}};
+  sources.add(sun);
+  const auto seen = see_stokes(scene, sources, {{Vec3{} - d * 5, d, 0}}, 1 << 14)[0];
+  const Stokes wanted{M(0, 0), M(1, 0), M(2, 0), M(3, 0)};
+  ASSERT_GT(seen.S[0], 0);
+  for (size_t c = 1; c < 4; ++c) EXPECT_NEAR(seen.S[c] / seen.S[0], wanted[c] / wanted[0], 1e-5) << "IQUV"[c];
+  EXPECT_GT(std::fabs(wanted[2] / wanted[0]), 0.05) << "the planes differ";
+}
+// Straight down on rough metal under an even sky nothing is polarised for symmetry, but every sample is: of 64 paths Q
+// and U are noise, which the errors say. Seen from the side the same surface is polarised for certain. With three
+// degrees of freedom a degree is beyond three errors in some 6 % of cases (F distribution): 13 of 40 by chance less
+// often than once in 10^5.
+TEST(Stokes, NoiseIsNotTakenForPolarisation) {
+  const auto scene = scene_of({quad(100, 0, 0)}, {material("metal", metal(0.4))});
+  constexpr size_t n = 40;
+  size_t defined[2] = {};
+  for (const size_t aside : {0u, 1u}) {
+    std::vector<Ray> rays;
+    for (size_t i = 0; i < n; ++i)
+      rays.push_back(towards_origin(aside ? 75 * kDegree : 0, 0.1 * static_cast<double>(i)));
+    const auto run = render(scene, sky(false), std::make_unique<StokesRays>(rays, 64));
+    const auto seen = seen_of(run.result);
+    ASSERT_EQ(run.result.stokes_covariance.size(), 6 * n);
+    double most = 0;
+    for (size_t i = 0; i < n; ++i) {
+      const StokesSeen& s = seen[i];
+      double C[6];
+      std::copy_n(&run.result.stokes_covariance[i * 6], 6, C);
+      EXPECT_NEAR(std::sqrt(C[3]), s.error[1], 1e-6 * s.S[0]) << "the variance of Q is that of its error";
+      const LinearPolarisation p = linear_polarisation({s.S[0], s.S[1], s.S[2]}, C);
+      EXPECT_LE(p.debiased, p.degree);
+      most = std::max(most, p.degree);
+      defined[aside] += !p.undefined;
+    }
+    EXPECT_GT(most, 1e-3);
+  }
+  EXPECT_LE(defined[0], 13u);
+  EXPECT_GE(defined[1], 30u);
+}
+// What models without matrices scatter counts as depolarised, and is told: all of it here.
+TEST(Stokes, LightOfModelsWithoutMatricesIsTold) {
+  const ModelSpec grooves{"oren_nayar", {{"sigma", 0.3}}, {{"reflectance", Curve::constant(0.5)}}, {}, nullptr};
+  for (const bool known : {false, true}) {
+    const auto scene = scene_of({quad(100, 0, 0)}, {material("ground", known ? lambert(0.5) : grooves)});
+    const auto seen = see_stokes(scene, sky(false), {towards_origin(0.5)}, 64)[0];
+    EXPECT_NEAR(seen.depolarised, known ? 0 : seen.S[0], 1e-6);
+    EXPECT_EQ(seen.S[1], 0);
+  }
+}
+
+// Which techniques are off is said where they would be on.
+TEST(Stokes, TechniquesWithoutMatricesAreNamed) {
+  const auto said = [](ModelSpec surface, bool stokes) {
+    std::string all;
+    JobOptions job;
+    job.progress = false;
+    job.diagnose = [&](const Diagnostic& d) { all += line_of(d) + "\n"; };
+    std::vector<std::unique_ptr<Sensor>> sensors;
+    if (stokes)
+      sensors.push_back(std::make_unique<StokesRays>(std::vector<Ray>{towards_origin(0.5)}, 4));
+    else
+      sensors.push_back(std::make_unique<RaySensor>(std::vector<Ray>{towards_origin(0.5)}, one_band(), 4));
+    run_job(scene_of({quad(100, 0, 0)}, {material("plate", std::move(surface))}), sky(false), sensors, job);
+    return all;
+  };
+  EXPECT_NE(said(dielectric(1.5), true).find("[DR208]"), std::string::npos);
+  EXPECT_EQ(said(dielectric(1.5), false).find("[DR208]"), std::string::npos);
+  EXPECT_EQ(said(lambert(0.5), true).find("[DR208]"), std::string::npos);
+}
+
+// Light scattered once by a thin layer of air: I = P11(90 deg...) tau / ..., sun at 60 deg, looked at straight down
+// (closed form, depolarisation 0.0279; Hansen & Travis 1974): I/E0 7.369816e-4, degree 0.573657.
+TEST(Stokes, AThinLayerOfAirScattersOnce) {
+  const ModelSpec rayleigh{"rayleigh", {{"depolarisation", 0.0279}}, {}, {}, nullptr};
+  const auto scene = slab_scene(medium(Curve::constant(0), Curve::constant(0.01), rayleigh), 1);
+  SourceSpecs sources;
+  sources.add(SunSpec{{dir_from_angles(60 * kDegree, 0.6), 0, Curve::constant(1)}});
+  PipelineOptions options;
+  options.max_scatterings = 1;
+  Polarimetry how;
+  how.frame = StokesFrame::scattering_plane;
+  const auto seen = see_stokes(scene, sources, {{{0, 0, 2}, {0, 0, -1}, 0}}, 1 << 16, how, options)[0];
+  EXPECT_NEAR(seen.S[0], 7.369816e-4, 1e-7 + kSignificant * seen.error[0]);
+  EXPECT_LT(seen.error[0], 0.02 * seen.S[0]);
+  EXPECT_NEAR(seen.S[1] / seen.S[0], -0.573657, 1e-5) << "across the plane of scattering";
+  EXPECT_NEAR(seen.S[2] / seen.S[0], 0, 1e-6);
+  EXPECT_EQ(seen.depolarised, 0);
+}
+
+// Cases of the IPRT intercomparison (C. Emde et al., JQSRT 164, 2015) as PSTAR computes them: one layer under a
+// collimated sun of irradiance 1. Azimuths from x towards y; view zenith and azimuth of the direction looked along. The
+// tables are not part of the project.
+struct IprtRow {
+  double depolarisation, altitude, sza, saa, vza, vaa;
+  Stokes S;
+};
+std::vector<IprtRow> iprt(const std::string& file) {
+  std::vector<IprtRow> rows;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    IprtRow r{};
+    std::istringstream(line) >> r.depolarisation >> r.altitude >> r.sza >> r.saa >> r.vza >> r.vaa >> r.S[0] >>
+        r.S[1] >> r.S[2] >> r.S[3];
+    // Straight up and down the meridian is that of azimuth 0.
+    if (std::fabs(std::sin(r.vza * kDegree)) > 1e-9 || r.vaa == 0) rows.push_back(r);
+  }
+  return rows;
+}
+bool long_run() { return std::getenv("SUITE_LONG") != nullptr; }
+const char* iprt_folder() { return std::getenv("SUITE_POLARISATION_DATA"); }
+
+struct IprtCase {
+  double depth = 0.5, albedo = 1, ground = 0;  // single-scattering albedo; reflectance
+  int long_paths = 19;                         // power of two
+  bool resolved = true;                        // to 0.3 % in the long run
+  std::function<ModelSpec(const IprtRow&)> phase;
+};
+// V over that of the table, by least squares, with its error.
+struct Slope {
+  double value, error;
+};
+Slope compare(const std::vector<IprtRow>& rows, const IprtCase& c) {
+  double product = 0, weight = 0;
+  for (size_t first = 0; first < rows.size();) {
+    const IprtRow& f = rows[first];
+    size_t end = first;
+    while (end < rows.size() && rows[end].depolarisation == f.depolarisation && rows[end].sza == f.sza) ++end;
+    auto scene = std::make_shared<Scene>(*slab_scene(
+        medium(Curve::constant(c.depth * (1 - c.albedo)), Curve::constant(c.depth * c.albedo), c.phase(f)), 1));
+    if (c.ground > 0) {
+      scene->materials.push_back(material("ground", lambert(c.ground)));
+      place(*scene, PrimitiveKind::plane, {0, 0}, 2, translation({0, 0, 1e-6}));
+      check_scene(*scene, "slab over ground");
+    }
+    SourceSpecs sources;
+    sources.add(SunSpec{{dir_from_angles(f.sza * kDegree, f.saa * kDegree), 0, Curve::constant(1)}});
+    std::vector<Ray> rays;
+    for (size_t i = first; i < end; ++i)
+      rays.push_back({{0, 0,
+                       rows[i].altitude > 0.5 ? 1.5
+                       : c.ground > 0         ? 1e-5
+                                              : -0.5},
+                      dir_from_angles(rows[i].vza * kDegree, rows[i].vaa * kDegree),
+                      0});
+    const auto seen = see_stokes(scene, sources, rays, 1u << (long_run() ? c.long_paths : 12));
+    for (size_t i = first; i < end; ++i) {
+      const StokesSeen& s = seen[i - first];
+      for (size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(s.S[k], rows[i].S[k], 2e-7 + kSignificant * s.error[k]) << "IQU"[k] << " of row " << i;
+        if (!long_run() || !c.resolved) continue;
+        EXPECT_NEAR(s.S[k], rows[i].S[k], 0.003 * rows[i].S[0]) << "IQU"[k] << " of row " << i;
+      }
+      if (!(s.error[3] > 0)) continue;
+      product += s.S[3] * rows[i].S[3] / (s.error[3] * s.error[3]);
+      weight += rows[i].S[3] * rows[i].S[3] / (s.error[3] * s.error[3]);
+    }
+    first = end;
+  }
+  return {weight > 0 ? product / weight : 0, weight > 0 ? 1 / std::sqrt(weight) : INFINITY};
+}
+
+TEST(Stokes, RayleighLayersAgreeWithPstar) {
+  if (!iprt_folder()) GTEST_SKIP() << "SUITE_POLARISATION_DATA does not name the folder with iprt/";
+  const auto phase = [](const IprtRow& r) {
+    return ModelSpec{"rayleigh", {{"depolarisation", r.depolarisation}}, {}, {}, nullptr};
+  };
+  const auto a1 = iprt(std::string(iprt_folder()) + "/iprt/a1_rayleigh.txt"),
+             a2 = iprt(std::string(iprt_folder()) + "/iprt/a2_lambert.txt");
+  ASSERT_GT(a1.size(), 60u);
+  ASSERT_GT(a2.size(), 10u);
+  compare(a1, {0.5, 1, 0, 19, true, phase});
+  compare(a2, {0.1, 1, 0.3, 18, true, phase});
+}
+// Flights aside bring, in media that scatter forwards, what chance brings without them: Stokes vectors agree, and those
+// with them are less noisy in I. A matrix that polarises: off-diagonal elements up to 0.6 and retardance.
+TEST(Stokes, FlightsAsideBringPolarisedLight) {
+  const ModelSpec forward{"tabulated",
+                          {},
+                          {},
+                          {{"table", "0 400, 5 60, 20 4, 60 0.5, 120 0.1, 140 0.35, 160 0.15, 180 0.3"},
+                           {"matrix",
+                            "0 0 1 1 0 1, 30 -0.2 0.97 0.95 0.1 0.94, 90 -0.6 0.9 0.4 0.3 0.35, 140 0.3 0.85 -0.6 -0.3 "
+                            "-0.55, 180 0 0.7 -0.7 0 -0.4"}},
+                          nullptr};
+  const auto scene = slab_scene(medium(Curve::constant(0), Curve::constant(1), forward), 1);
+  SourceSpecs sources;
+  sources.add(SunSpec{{dir_from_angles(0.7, 0.5), 0, Curve::constant(1)}});
+  std::vector<Ray> rays;
+  for (int i = 0; i < 4; ++i) rays.push_back({{0, 0, -0.5}, dir_from_angles(0.3 + 0.2 * i, 0.8 * i), 0});
+  std::vector<StokesSeen> seen[2];
+  for (const bool aside : {false, true}) {
+    PipelineOptions options;
+    options.side_flights = aside;
+    options.seed = aside ? 1 : 2;
+    seen[aside] = see_stokes(scene, sources, rays, aside ? 1 << 14 : 1 << 16, {}, options);
+  }
+  double polarised = 0;
+  for (size_t i = 0; i < rays.size(); ++i)
+    for (size_t k = 0; k < 4; ++k) {
+      const StokesSeen &a = seen[0][i], &b = seen[1][i];
+      EXPECT_NEAR(a.S[k], b.S[k], 6 * std::hypot(a.error[k], b.error[k])) << "IQUV"[k] << " of ray " << i;
+      if (k > 0) polarised = std::max(polarised, std::fabs(b.S[k]) / (b.error[k] + 1e-12));
+    }
+  EXPECT_GT(polarised, 30) << "it is resolved";
+}
+// Prolate spheroids of mopsmap: six elements, and light that turns. Of the rows off the principal plane V is a hundred
+// thousandth of I: all of them together show its sign and size. Forward peaks leave I at some 1 % at 2^19 paths.
+TEST(Stokes, ALayerOfSpheroidsAgreesWithPstar) {
+  if (!iprt_folder()) GTEST_SKIP() << "SUITE_POLARISATION_DATA does not name the folder with iprt/";
+  if (!long_run()) GTEST_SKIP() << "in the long run";
+  const NetCdf3 file(std::string(iprt_folder()) + "/sizedistr_spheroid.cdf");
+  constexpr size_t n = 1801;
+  const auto theta = file.numbers("theta", {1, 1, 6, n}), P = file.numbers("phase", {1, 1, 6, n});
+  const double albedo = file.numbers("ssa", {1, 1})[0];
+  std::string table, matrix;
+  for (size_t i = 0; i < n; ++i) {
+    // Rows: P11, P12, P33, P34, P22, P44, all of one grid of angles.
+    const size_t at = theta[0] < theta[n - 1] ? i : n - 1 - i;
+    const auto element = [&](size_t row) { return P[row * n + at] / P[at]; };
+    table += strf("%.9g %.9g, ", theta[at], P[at]);
+    matrix +=
+        strf("%.9g %.9g %.9g %.9g %.9g %.9g, ", theta[at], element(1), element(4), element(2), element(3), element(5));
+  }
+  const auto a4 = iprt(std::string(iprt_folder()) + "/iprt/a4_spheroid.txt");
+  ASSERT_GT(a4.size(), 20u);
+  const Slope V = compare(a4, {0.2, albedo, 0, 19, false, [&](const IprtRow&) {
+                                 return ModelSpec{"tabulated", {}, {}, {{"table", table}, {"matrix", matrix}}, nullptr};
+                               }});
+  EXPECT_LT(V.error, 0.05);
+  EXPECT_NEAR(V.value, 1, kSignificant * V.error);
+}
+
+}  // namespace
+}  // namespace suite::test
