@@ -6,8 +6,8 @@
 // each has a place and a pulse of its own; of brighter ones their sum has.
 // Assumes: light outside the frame makes no halo in it; light left over from the read-outs before is that of a scene
 // that stood still. Based on: I. P. Csorba, "Image Tubes", 1985 (gain, halo, equivalent background illumination);
-// M. A. Wampler et al. and others give F^2 of 1.6 to 3.5 by generation; E. J. Bender, "Present image-intensifier tube
-// structures", SPIE Press 2000.
+// E. J. Bender, "Present image-intensifier tube structures", in L. M. Biberman (ed.), "Electro-Optical Imaging: System
+// Performance and Modeling", SPIE Press 2000.
 #include <algorithm>
 #include <cmath>
 #include <vector>
