@@ -55,6 +55,8 @@ class ArrayDetector {
   virtual DetectorNoise noise(double exposure, double area) const = 0;
   // Reads whole frames of one chip: light goes from pixel to pixel.
   virtual bool whole_frames() const { return false; }
+  // What is wrong with it for pixels of this pitch (m), in words; empty = nothing.
+  virtual std::string fault_of(Vec2) const { return {}; }
 };
 
 // What a detector always is.

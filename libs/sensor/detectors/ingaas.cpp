@@ -1,5 +1,5 @@
 // InGaAs photodiodes for 0.9 to 1.7 um: a charge detector whose dark current follows from its temperature.
-// Based on: A. Rogalski, "Infrared Detectors", 2nd ed. 2010, section 9 (dark current of InGaAs by temperature).
+// Based on: A. Rogalski, "Infrared Detectors", 2nd ed. 2010 (dark current of InGaAs by temperature).
 #include <cmath>
 
 #include "sensor/detectors/ccd.h"

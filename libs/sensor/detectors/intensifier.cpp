@@ -6,8 +6,8 @@
 // each has a place and a pulse of its own; of brighter ones their sum has.
 // Assumes: light outside the frame makes no halo in it; light left over from the read-outs before is that of a scene
 // that stood still. Based on: I. P. Csorba, "Image Tubes", 1985 (gain, halo, equivalent background illumination);
-// M. A. Wampler et al. and others give F^2 of 1.6 to 3.5 by generation; E. J. Bender, "Present image-intensifier tube
-// structures", SPIE Press 2000.
+// E. J. Bender, "Present image-intensifier tube structures", in L. M. Biberman (ed.), "Electro-Optical Imaging: System
+// Performance and Modeling", SPIE Press 2000.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -26,6 +26,7 @@ constexpr double kEvents = 10;                   // photoelectrons of a pixel th
 constexpr int kMostBefore = 16;                  // read-outs that light may be left over from
 constexpr double kLeast = 1e-4;                  // share of the light of one read-out that is followed into a later one
 constexpr double kLampKelvin = 2856;             // CIE illuminant A, that luminous sensitivities are told for
+constexpr double kWidest = 10;                   // pixels, standard deviation of a spot
 constexpr double kReach = 5;                     // standard deviations of a spot
 constexpr double kElementary = 1.602176634e-19;  // C, SI
 
@@ -74,6 +75,10 @@ class Intensifier final : public ArrayDetector {
  public:
   Intensifier(const DetectorSpec& spec, const Tube& tube) : d_(spec), tube_(tube) {}
   bool whole_frames() const override { return true; }
+  std::string fault_of(Vec2 pitch) const override {
+    const double pixels = tube_.blur / std::min(pitch.x, pitch.y);
+    return pixels > kWidest ? strf("spots of %.3g pixels (standard deviation), and %g at most", pixels, kWidest) : "";
+  }
 
   ArrayReading read(const ArrayLight& light) const override {
     const std::vector<double> landing = landed(light);

@@ -56,7 +56,7 @@ ArrayDetectorRow photon_counting_row() {
             read_pixels(p, "dark_current_e_s", d);
             Threshold t;
             t.electrons = p.number_in("threshold_e", 0, 1e9, "electrons behind the register");
-            t.frames = static_cast<uint32_t>(p.integer("frames", 1, 65535, 1));
+            t.frames = static_cast<uint32_t>(p.integer("frames", 1, 4096, 1));
             return std::make_shared<CountingCcd>(d, read_register(p), t);
           }};
 }

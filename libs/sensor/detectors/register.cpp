@@ -65,7 +65,7 @@ RegisterKeys read_register(const Params& p) {
   if (!(r.stages.gain() <= 1e5))
     throw p.at("stage_probability").error(strf("a gain of %.3g", r.stages.gain()), "at most 1e5");
   r.clock_induced = p.number_in("clock_induced_e", 0, 1e4, "electrons a read-out", 0);
-  r.serial_clock_induced = p.number_in("serial_clock_induced_e", 0, 1e4, "electrons a read-out", 0);
+  r.serial_clock_induced = p.number_in("serial_clock_induced_e", 0, 100, "electrons a read-out", 0);
   r.full_well = p.number_in("register_full_well_e", 0, 1e12, "electrons", 0);
   r.read_noise = p.number_in("read_noise_e", 0, 1e12, "electrons", 0);
   return r;

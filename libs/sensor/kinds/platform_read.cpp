@@ -219,6 +219,8 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
     throw p.at("detector")
         .error("light goes from pixel to pixel in this kind of detector, which wants whole frames",
                "readout: {kind: global} or rolling, and one chip");
+  if (const std::string fault = array.reader ? array.reader->fault_of(array.pitch) : ""; !fault.empty())
+    throw p.at("detector").error(fault, "a smaller phosphor: {blur_um}, or larger pixels");
   check_lens(array, lens, p);
   spec.arrays.push_back(std::move(array));
   const size_t number = spec.arrays.size() - 1, chips = own_bands.size();

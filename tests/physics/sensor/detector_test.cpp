@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/stats.h"
+#include "math/variates.h"
 #include "sensor/detector.h"
 #include "spectral/planck.h"
 #include "support/platform_kit.h"

@@ -166,6 +166,7 @@ TEST(LowLight, MessagesOfArrays) {
   EXPECT_THAT(told("16", tube, "rows: 4, chips: [{columns: 2, offset_mm: [-1, 0]}, {columns: 2, offset_mm: [1, 0]}]"),
               HasSubstr("whole frames"));
   EXPECT_EQ(told("16", tube), "no error");
+  EXPECT_THAT(told("16", tube + ", phosphor: {blur_um: 101}"), HasSubstr("spots of 10.1 pixels"));
   EXPECT_THAT(told("{detector_noise: 0.3, relative_error: 0.01}", "gain_e_per_dn: 1"),
               HasSubstr("beside the detector's noise"));
   EXPECT_THAT(told("{detector_noise: 0.3}", "fill_factor: 1"), HasSubstr("no detector whose noise"));
