@@ -85,10 +85,10 @@ auto PulseRows::make_job(std::shared_ptr<const Light> end, const ReceiverEnd* re
     method.max_nodes = static_cast<int>(std::min<uint32_t>(plan_.instrument.orders, 1u << 20) + more);
     method.max_scatterings = plan_.instrument.orders;
   }
-  const bool tags = !plan_.channel_of_object.empty();
+  const bool tags = plan_.tags.any();
   auto job = std::make_unique<Job>(kit_, std::move(lit), method, active ? index : uint16_t{0xfffd}, receiver,
                                    plan_.instrument.orders, once_ != nullptr, tags, passive, active);
-  if (tags) job->sink.tell_apart(plan_.channel_of_object, *job->kernel);
+  if (tags) job->sink.tell_apart(plan_.tags, *job->kernel);
   return job;
 }
 
