@@ -85,10 +85,10 @@ auto PulseRows::make_job(std::shared_ptr<const Light> end, const ReceiverEnd* re
     method.max_nodes = static_cast<int>(std::min<uint32_t>(plan_.instrument.orders, 1u << 20) + more);
     method.max_scatterings = plan_.instrument.orders;
   }
-  const bool tags = !plan_.channel_of_object.empty();
+  const bool tags = plan_.tags.any();
   auto job = std::make_unique<Job>(kit_, std::move(lit), method, active ? index : uint16_t{0xfffd}, receiver,
                                    plan_.instrument.orders, once_ != nullptr, tags, passive, active);
-  if (tags) job->sink.tell_apart(plan_.channel_of_object, *job->kernel);
+  if (tags) job->sink.tell_apart(plan_.tags, *job->kernel);
   return job;
 }
 
@@ -145,11 +145,12 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
         for (uint32_t sample = 0; sample < count; ++sample) {
           const std::array<double, 4> u = stream.draw(sample, dimensions::kSensor.first);
           RangeSink::Lane lane{row, static_cast<int>(s), pulse.pulse.energy * kit_.photons_of_joule, 0};
-          const SensorRay ray =
+          SensorRay ray =
               from_laser ? this->from_laser(pulse, stream, sample, u) : from_receiver(job, pulse, pixel, u, lane);
           lane.active /= count, lane.passive /= count;
           row->add_paths(job.active ? 1 : 0);
           if (lane.active == 0 && lane.passive == 0) continue;
+          ray.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));  // as the kernel's path has it
           if (once_ && lane.active > 0)
             scatter_once(job, pulse, ray.ray,
                          {sample, count, std::clamp(plan_.head.bins / count, 4u, 128u), hash_of(key, s, 0x6f6e6365)},

@@ -20,8 +20,8 @@ struct TracePlan {
   LaserBeam beam;
   ReceiverField field;
   bool laser_first;
-  std::vector<size_t> channel_of_object;  // empty: there are no channels of tags
-  uint64_t instrument_key;                // of random numbers
+  RangeSink::Tags tags;
+  uint64_t instrument_key;  // of random numbers
   int scrambles;
   // Paths of a row: of a pixel, or of a pulse where they leave the laser.
   uint64_t paths() const { return uint64_t{instrument.paths} * (laser_first ? field.pixels() : 1); }

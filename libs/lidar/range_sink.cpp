@@ -9,9 +9,12 @@ constexpr double kMost = 1e30;
 }
 
 size_t RangeSink::tag(uint32_t p) const {
-  if (channel_of_object_.empty() || !kernel_->record(p).met) return 0;
-  const uint32_t object = kernel_->first(p).object;
-  return object < channel_of_object_.size() ? channel_of_object_[object] : 0;
+  if (!tags_ || !kernel_->record(p).met) return 0;
+  const FirstMeeting& first = kernel_->first(p);
+  if (const size_t channel = first.object < tags_->of_object.size() ? tags_->of_object[first.object] : 0)
+    return channel;
+  const uint32_t material = first.at ? first.at->material : kNone;
+  return material < tags_->of_material.size() ? tags_->of_material[material] : 0;
 }
 
 void RangeSink::add_single(const Lane& lane, double arrival, double light, const float* spectrum) {

@@ -21,11 +21,13 @@ class RangeSink final : public Sink<SpectralThroughputs> {
   // without_first: what matter scatters once comes from elsewhere (first_scattering.h).
   RangeSink(size_t width, uint16_t end, const ReceiverEnd* receiver, uint32_t orders, bool without_first)
       : lanes_(width), end_(end), receiver_(receiver), orders_(orders), without_first_(without_first) {}
-  // channel_of: of the object that a path has met first (FirstMeeting::object); empty: there are no such channels.
-  // kernel: whose sink this is.
-  void tell_apart(std::vector<size_t> channel_of_object, PathTracing& kernel) {
-    channel_of_object_ = std::move(channel_of_object), kernel_ = &kernel;
-  }
+  // Channels by what a path has met first, 0 = none: of the object, else of its material.
+  struct Tags {
+    std::vector<size_t> of_object, of_material;
+    bool any() const { return !of_object.empty(); }
+  };
+  // tags: kept. kernel: whose sink this is.
+  void tell_apart(const Tags& tags, PathTracing& kernel) { tags_ = &tags, kernel_ = &kernel; }
   void begin(uint32_t p, const Lane& lane) { lanes_[p] = lane; }
   uint64_t failures() const { return failures_; }
   // Light of a lane that has been found elsewhere: photons = lane.active times light. spectrum: of the end.
@@ -40,7 +42,7 @@ class RangeSink final : public Sink<SpectralThroughputs> {
   const ReceiverEnd* receiver_;
   uint32_t orders_;
   bool without_first_;
-  std::vector<size_t> channel_of_object_;
+  const Tags* tags_ = nullptr;  // null: there are no such channels
   PathTracing* kernel_ = nullptr;
   uint64_t failures_ = 0;
 };

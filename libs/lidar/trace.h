@@ -49,7 +49,7 @@ struct PulseReport {
   bool hot_spot = false;     // leaves that fill space were passed once by light scattered once (first_scattering.h)
 };
 
-// What the blocks of an instrument belong to. scene: for its origin.
+// What the blocks of an instrument belong to. scene: for its origin. Error: an instrument with a fault (fault_of).
 ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument);
 
 // Traces pulses and hands their blocks to the sink in the order of the train. A stop signal ends it between blocks by

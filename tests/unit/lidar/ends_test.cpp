@@ -93,6 +93,40 @@ TEST(LidarEnds, AgreeFromTwoPlaces) {
   expect_same(scene, lidar, "two places over mist");
 }
 
+// Water that scatters, under a flat surface that bends: manifold connections from the bed and from the water.
+TEST(LidarEnds, AgreeThroughWater) {
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {material("bed", lambert(0.4)),
+                      material("water", {"dielectric", {}, {{"index", Curve::constant(1.33)}}, {}, nullptr})};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -3}));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 1);
+  scene->media = {medium(Curve::constant(0.05), Curve::constant(0.1), hg(0.4))};
+  scene->media[0].index = Curve::constant(1.33);
+  scene->materials[1].inside = 0;
+  check_scene(*scene, "water");
+  DownLidar lidar = wide(10);
+  lidar.laser.offset = lidar.receiver.offset = {quat_about({0, 1, 0}, 0.3), {}};  // past the mirror image
+  lidar.laser.beam.full_angle_1_e2 = 0.2, lidar.receiver.field_of_view = 0.3;
+  lidar.gate_of(8, 20, 2e-9);
+  lidar.orders = 3;
+  expect_same(scene, lidar, "water");
+}
+
+// A grid of cells of different density.
+TEST(LidarEnds, AgreeOverACloud) {
+  Pcg32 random(3);
+  auto scene = scene_with(medium(Curve::constant(0), Curve::constant(1), hg(0.7)),
+                          grid_of({8, 8, 6}, translation({-4, -4, 1}), [&](uint32_t, uint32_t, uint32_t) {
+                            return random.uniform() < 0.5 ? 0.6 * random.uniform() : 0;
+                          }));
+  scene->materials = {material("soil", lambert(0.3))};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0);
+  check_scene(*scene, "cloud");
+  DownLidar lidar = wide(12);
+  lidar.gate_of(4, 14, 2e-9);
+  expect_same(scene, lidar, "cloud");
+}
+
 // A spot of the same angle and power as a top hat of one joule, a camera of one pixel: the sum over all range bins.
 // (The beam is even over the plane, the spot over the sphere: they differ by 1.5 % at the edge.)
 TEST(LidarEnds, SumsOfRangeBinsAreTheSteadyImage) {

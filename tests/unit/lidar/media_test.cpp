@@ -77,6 +77,24 @@ TEST(LidarMedia, TheBedUnderFlatWaterReturnsLateAndWeak) {
   }
 }
 
+// A beam that is 20 degrees off the zenith comes from the bed 91.81587 ns after the surface's place, 2 D n / (c cos w).
+TEST(LidarMedia, ABeamOffTheZenithIsLateByItsWayInWater) {
+  const double H = 400, D = 10, a = 20 * kDegree;
+  DownLidar lidar(H, 16);
+  lidar.laser.offset = lidar.receiver.offset = {quat_about({0, 1, 0}, a), {}};
+  lidar.laser.beam.full_angle_1_e2 = 2e-5;
+  lidar.receiver.field_of_view = 1e-3;
+  lidar.gate_of(H / std::cos(a) - 1, H / std::cos(a) + 30, 1e-10);
+  const Received got = receive(bed(D, Curve::constant(1.33), 0.05), lidar);
+  double sum = 0, first = 0;
+  for (const ResponseBlock& b : got.blocks)
+    for (size_t e = 0; e < b.entries(); ++e) {
+      sum += b.value[2 * e];
+      first += b.value[2 * e] * (lidar.gate.start + (b.bin[e] - 0.5) * lidar.gate.bin);
+    }
+  EXPECT_NEAR(first / sum - 2 * H / std::cos(a) / kSpeedOfLight, 91.81587e-9, 5e-12);
+}
+
 // n = 1.33 + 0.02 / wavelength^2 at 0.532 um: n_g = n - wavelength dn/dwavelength = 1.33 + 3 x 0.02 / wavelength^2.
 TEST(LidarMedia, TimeGoesByTheGroupIndex) {
   const double H = 100, D = 10, um = 0.532;
