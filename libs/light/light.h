@@ -107,7 +107,8 @@ class Light {
   // Adds scale times the radiance from a direction at the time of a ray (s): far lights that give no spectrum above.
   // Bug for others.
   virtual void add(Dir direction, double time, float scale, std::span<float> radiance) const;
-  // What a sensor sees of it straight ahead if its far points come by other means (far_points.h): less than add() gives.
+  // What a sensor sees of it straight ahead if its far points come by other means (far_points.h): less than add()
+  // gives.
   virtual void add_without_points(Dir direction, double time, float scale, std::span<float> radiance) const {
     add(direction, time, scale, radiance);
   }

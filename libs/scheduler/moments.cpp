@@ -73,7 +73,8 @@ std::string above_airglow(const SourceSpecs& written, Sensors sensors) {
       for (const Capture& c : task.captures)
         if (middle_ray(*sensor, c, c.problems() / 2).ray.origin.z > kLowestLayer)
           return "night sky: sensor '" + sensor->name() +
-                 "' stands above the layers of airglow (87 km), which it sees as from the ground: no layer below it, no "
+                 "' stands above the layers of airglow (87 km), which it sees as from the ground: no layer below it, "
+                 "no "
                  "limb";
   return {};
 }

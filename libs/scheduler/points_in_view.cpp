@@ -36,13 +36,15 @@ class PointsInView {
     sensor_.image_point(capture_, direction_at, std::pow(10, -0.4 * point.v), [&](const PointShare& s) {
       if (above.empty()) above = all.irradiance(point, primed_.state());
       // Shares of one moment have one line of sight.
-      if (weight == 0 || s.time != time || !(s.origin == origin)) look(above, time = s.time, origin = s.origin, direction_at(s.time));
+      if (weight == 0 || s.time != time || !(s.origin == origin))
+        look(above, time = s.time, origin = s.origin, direction_at(s.time));
       take(s, found);
       weight += s.weight;
       const Capture::Place at = capture_.place_of(s.problem);
       found.column += s.weight * (at.column + 0.5), found.row += s.weight * (at.row + 0.5);
     });
-    if (!(weight > 0) || std::none_of(found.irradiance.begin(), found.irradiance.end(), [](double e) { return e > 0; })) return;
+    if (!(weight > 0) || std::none_of(found.irradiance.begin(), found.irradiance.end(), [](double e) { return e > 0; }))
+      return;
     found.column /= weight, found.row /= weight;
     for (double& e : found.irradiance) e /= weight;
     seen.push_back(std::move(found));
@@ -75,7 +77,8 @@ class PointsInView {
   void take(const PointShare& s, SeenPoint& found) {
     per_bin_.resize(arriving_.size());
     for (size_t k = 0; k < arriving_.size(); ++k)
-      per_bin_[k] = static_cast<float>(s.weight * arriving_[k] * (s.spectral.empty() ? 1.0 : static_cast<double>(s.spectral[k])));
+      per_bin_[k] =
+          static_cast<float>(s.weight * arriving_[k] * (s.spectral.empty() ? 1.0 : static_cast<double>(s.spectral[k])));
     sums_.assign(result_.bands, 0.0);
     projection_.add(per_bin_, sums_);
     double* const row = &result_.radiance[s.problem * result_.values_per_problem()];

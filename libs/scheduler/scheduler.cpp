@@ -13,8 +13,8 @@
 #include "scheduler/items.h"
 #include "scheduler/judge.h"
 #include "scheduler/kits.h"
-#include "scheduler/points_in_view.h"
 #include "scheduler/planner.h"
+#include "scheduler/points_in_view.h"
 #include "scheduler/primed.h"
 #include "scheduler/result.h"
 #include "scheduler/stored.h"
@@ -325,8 +325,7 @@ class Job {
     CaptureResult result = with_blind_flagged(sensor, capture, c.result->finish());
     report_.shortfalls[item.sensor].shortfall.merge(c.result->shortfall());
     add_points(*c.primed, sensor_of(item), capture, result);
-    result.task = item.task;
-    result.capture = item.capture;
+    result.task = item.task, result.capture = item.capture;
     judge_.add(item.sensor, c.work, c.primed->kit.bands->reference, result, report_, log);
     outcomes_[item.sensor].add(sensor.bands(capture.state), result, log.statistics);
     if (item.task == 0 && item.capture == 0)
@@ -337,8 +336,7 @@ class Job {
     log.state = c.primed->state().text();
     log.kernel = c.primed->pipeline.kernel();
     log.id = item.id;
-    log.window = capture.window;
-    log.problems = capture.problems();
+    log.window = capture.window, log.problems = capture.problems();
     report_.statistics.merge(log.statistics);
     ++report_.captures;
     report_.problems += capture.problems();

@@ -22,8 +22,10 @@ TrailSteps::TrailSteps(const TimeWindow& w, const std::function<std::optional<Ve
 }
 
 std::string points_table(std::span<const SeenPoint> points, std::span<const Band> bands) {
-  std::string text = "# stars: number in the catalogue, magnitude, centre of its light in pixels, irradiance at the sensor in W/(m2 um)\n"
-                     "number,v_mag,column,row";
+  std::string text =
+      "# stars: number in the catalogue, magnitude, centre of its light in pixels, irradiance at the sensor in W/(m2 "
+      "um)\n"
+      "number,v_mag,column,row";
   for (const Band& band : bands) text += "," + band.name;
   text += "\n";
   for (const SeenPoint& p : points) {

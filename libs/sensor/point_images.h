@@ -14,17 +14,17 @@ namespace suite {
 // What a pixel gathers of a far point: its radiance is the point's irradiance, of each bin, times these weights.
 struct PointShare {
   size_t problem = 0;
-  double weight = 0;                      // 1/sr, all bins
-  std::span<const float> spectral = {};   // of each bin, besides; empty = 1
-  double time = 0;                        // s, when
-  Vec3 origin;                            // m, from where it is seen then
+  double weight = 0;                     // 1/sr, all bins
+  std::span<const float> spectral = {};  // of each bin, besides; empty = 1
+  double time = 0;                       // s, when
+  Vec3 origin;                           // m, from where it is seen then
 };
 
 // A point as it was seen in a capture.
 struct SeenPoint {
   int number = 0;
-  double v = 0, column = 0, row = 0;      // magnitude; centre of its light, in pixels from the picture's upper left corner
-  std::vector<double> irradiance;         // W/(m2 um) at the sensor, of each band: through the air, and where nothing hides it
+  double v = 0, column = 0, row = 0;  // magnitude; centre of its light, in pixels from the picture's upper left corner
+  std::vector<double> irradiance;  // W/(m2 um) at the sensor, of each band: through the air, and where nothing hides it
 };
 
 class SeesPoints {
@@ -32,9 +32,9 @@ class SeesPoints {
   virtual ~SeesPoints() = default;
   // Whether it does so in a capture: its rays say the same.
   virtual bool sees_points(const Capture& capture) const = 0;
-  // Hands over all shares of a point in a capture, between Sensor::begin and accept. direction_at: towards it at a time.
-  // brightness: of it over that of a star of V = 0, for which more effort is worth while. share: is called in any order,
-  // from one thread.
+  // Hands over all shares of a point in a capture, between Sensor::begin and accept. direction_at: towards it at a
+  // time. brightness: of it over that of a star of V = 0, for which more effort is worth while. share: is called in any
+  // order, from one thread.
   virtual void image_point(const Capture& capture, const std::function<Dir(double)>& direction_at, double brightness,
                            const std::function<void(const PointShare&)>& share) const = 0;
   // The points of a capture, before its result is accepted.

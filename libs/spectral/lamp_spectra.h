@@ -1,6 +1,6 @@
-// Spectra of lamps as sums of Gaussian lines and bands, made here so that their colours are those of the kinds: the LEDs
-// lie on Planck's locus at their temperature (CIE 1931, within 2 %), high-pressure sodium near 1900 K, metal halide and
-// coated mercury lamps between 3500 and 3900 K. For illumination and camera signals; not for spectroscopy.
+// Spectra of lamps as sums of Gaussian lines and bands, made here so that their colours are those of the kinds: the
+// LEDs lie on Planck's locus at their temperature (CIE 1931, within 2 %), high-pressure sodium near 1900 K, metal
+// halide and coated mercury lamps between 3500 and 3900 K. For illumination and camera signals; not for spectroscopy.
 #pragma once
 #include <optional>
 #include <string>

@@ -107,8 +107,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   record.truncated = record.strayed = 0;
   record.scattered_first = record.met = false;
   record.received = ray.receiver != SensorRay::Receiver::none;
-  path.received = record.received;
-  path.points_apart = ray.points_apart;
+  path.received = record.received, path.points_apart = ray.points_apart;
   space_.start(p, path);
   if constexpr (Space::kGoesBack) passed_[p].sum = 0, passed_[p].again = false;
   if (!record.received) return active_.push_back(p);
@@ -286,9 +285,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p,
                        ? environment_.earth->meet(path.origin, path.direction, std::numeric_limits<double>::infinity())
                        : std::nullopt;
   if (!met) {
-    bool in_field = false;  // beams have come to the place in the air, which the path has left, as everywhere
-    if constexpr (Space::kGoesBack) in_field = flights_[slot].difference;
-    escape(p, in_field);
+    escape(p, Space::kGoesBack && flights_[slot].difference);
     return false;
   }
   Hit& hit = hits_[slot];
@@ -341,10 +338,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p, boo
     if (!met->spectrum) {  // its shape changes with direction
       memory = dense(p);
       std::fill(memory.begin(), memory.end(), 0.0f);
-      if (path.points_apart && path.order() == 0)
-        light.light->add_without_points(path.direction, path.time, 1, memory);
-      else
-        light.light->add(path.direction, path.time, 1, memory);
+      path.points_apart && path.order() == 0 ? light.light->add_without_points(path.direction, path.time, 1, memory)
+                                             : light.light->add(path.direction, path.time, 1, memory);
     }
     Contribution& c = contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);

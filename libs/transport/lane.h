@@ -46,16 +46,16 @@ struct Lane {
   Branch branch = Branch::none;
   bool sided = false;
   PathClaims claims;
-  double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
-  int knot = 0;              // whose shapes draw this path
-  double share = 1;          // of a path's light, where it goes on in parts
-  uint32_t surfaces = 0;     // met so far, the receiver included
-  uint32_t scatterings = 0;  // in media so far
-  uint32_t smooth = 0;       // smooth surfaces so far, of those met
-  uint32_t flights = 0;      // through media so far
-  uint8_t events = 0;        // EventKind so far
-  uint8_t received = 0;      // 1: starts at a receiver
-  bool points_apart = false; // SensorRay::points_apart
+  double last_density = 0;    // p_h of the last event, without roulette; 0 after a Dirac event or none
+  int knot = 0;               // whose shapes draw this path
+  double share = 1;           // of a path's light, where it goes on in parts
+  uint32_t surfaces = 0;      // met so far, the receiver included
+  uint32_t scatterings = 0;   // in media so far
+  uint32_t smooth = 0;        // smooth surfaces so far, of those met
+  uint32_t flights = 0;       // through media so far
+  uint8_t events = 0;         // EventKind so far
+  uint8_t received = 0;       // 1: starts at a receiver
+  bool points_apart = false;  // SensorRay::points_apart
   WaterSeen water = WaterSeen::nothing;
   uint32_t order() const { return surfaces + scatterings; }
 };

@@ -20,8 +20,8 @@ struct MoonGeometry {
 };
 
 struct MoonSpec {
-  SunSpec disk;           // irradiance: taken as given unless by_phase
-  bool by_phase = true;   // irradiance from the phase, the distances and the Sun's spectrum at 1 AU
+  SunSpec disk;             // irradiance: taken as given unless by_phase
+  bool by_phase = true;     // irradiance from the phase, the distances and the Sun's spectrum at 1 AU
   bool earthshine = false;  // besides, by phase: sunlight that the Earth sends there
   MoonGeometry geometry;    // filled from the date when disk.time is given
 };
@@ -37,9 +37,9 @@ Curve moon_reflectance(const MoonGeometry& geometry);
 // sun: at 1 AU.
 Curve moon_irradiance(const MoonGeometry& geometry, const Curve& sun);
 
-// The same of the Moon's night side and day side in the light of the Earth, whose phase angle is pi less the Moon's: 8 lx
-// at full Earth against the Sun's 1.3e5 lx, seen as the full Moon is (phase 1.5 degrees, before the fit's end), and less
-// by a Lambertian sphere's phase function. The Earth's colour and clouds are left out, which may count a third.
+// The same of the Moon's night side and day side in the light of the Earth, whose phase angle is pi less the Moon's: 8
+// lx at full Earth against the Sun's 1.3e5 lx, seen as the full Moon is (phase 1.5 degrees, before the fit's end), and
+// less by a Lambertian sphere's phase function. The Earth's colour and clouds are left out, which may count a third.
 Curve earthshine_irradiance(const MoonGeometry& geometry, const Curve& sun);
 
 }  // namespace suite

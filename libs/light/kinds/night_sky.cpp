@@ -143,6 +143,7 @@ class NightSkyLight final : public LightSpec {
     JulianDate tt, ut1;
     double seconds;
     std::shared_ptr<const NightMap> map;
+    bool media;                                    // in the scene: real air is then no field that knows it
     std::shared_ptr<const FarPoints> points = {};  // not before it has settled
     bool settled = false;
   };
@@ -156,7 +157,8 @@ class NightSkyLight final : public LightSpec {
     const SceneFrame frame =
         spec_.place ? SceneFrame(*spec_.place) : frame_of(at.scene, spec_.time.where, "a night sky");
     const Instant epoch = instant_of(spec_.time), instant = epoch + at.seconds;
-    Now now{frame, julian_tt(instant), julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds, nullptr};
+    Now now{frame,   julian_tt(instant),     julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds,
+            nullptr, !at.scene.media.empty()};
     now.map = std::make_shared<const NightMap>(spec_, CelestialSphere(frame, now.tt, now.ut1));
     at.said.push_back(sentence_of(*now.map, instant));
     return std::make_shared<const NightSkyLight>(spec_, std::move(now));
@@ -164,16 +166,23 @@ class NightSkyLight final : public LightSpec {
 
   // Air lifts the stars; where paths are scattered in it, nobody knows what it leaves of one.
   void settle(SourceSpecs& all, size_t own, std::vector<std::string>& said) const override {
-    const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
-    if (now_->settled || !spec_.catalogue || !spec_.in_view || !(scale > 0)) return;
+    if (now_->settled) return;
     Now now = *now_;
     now.settled = true;
-    if (all.air && all.air->scattering == AirScattering::traced)
+    const bool traced = all.air && all.air->scattering == AirScattering::traced;
+    const bool lit = all.air && all.air->scattering == AirScattering::diffuse && all.air->adjacency && !now.media;
+    if (all.has_air() && !traced && !lit)
+      said.push_back(
+          "night sky: the air dims it, and what it scatters of it is left out (real air with 'scattering: diffuse' and "
+          "adjacency, without media, has it)");
+    const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
+    const bool points = spec_.catalogue && spec_.in_view && scale > 0;
+    if (points && traced)
       said.push_back(
           "night sky: under `scattering: traced` its stars are spread over cells of 3 degrees, in views as well");
-    else
-      now.points = std::make_shared<const FarPoints>(
-          points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all)), scale));
+    if (points && !traced)
+      now.points =
+          std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all)), scale));
     all.lights[own] = std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
 

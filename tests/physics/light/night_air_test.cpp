@@ -1,6 +1,6 @@
-// A sky that is no beam under real air: with the field of the air, paths bring what the air scatters of it, as paths that
-// are scattered at every turn do. Fixed seed, three standard errors of the difference (significance 0.003 for each of
-// two views); what comes through without being scattered must be told apart from it.
+// A sky that is no beam under real air: with the field of the air, paths bring what the air scatters of it, as paths
+// that are scattered at every turn do. Fixed seed, three standard errors of the difference (significance 0.003 for each
+// of two views); what comes through without being scattered must be told apart from it.
 #include <gtest/gtest.h>
 
 #include <cmath>

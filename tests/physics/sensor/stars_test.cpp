@@ -1,5 +1,5 @@
-// Stars on focal planes: places and energy by closed forms, through perspective, distortion, point spread, motion of the
-// sky and air; hidden by what stands in front.
+// Stars on focal planes: places and energy by closed forms, through perspective, distortion, point spread, motion of
+// the sky and air; hidden by what stands in front.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -92,7 +92,8 @@ TEST(Stars, FrameCameraKeepsTheirEnergyAndPlace) {
     ASSERT_EQ(seen.size(), 1u);
     EXPECT_NEAR(seen[0].irradiance / above(kStar), 1, 1e-4);
     // In the pixel that holds it (the table has that pixel's middle).
-    EXPECT_NEAR(std::hypot(seen[0].column - 100, seen[0].row - 100), std::hypot(std::tan(right), std::tan(up)) / kStep, 0.8);
+    EXPECT_NEAR(std::hypot(seen[0].column - 100, seen[0].row - 100), std::hypot(std::tan(right), std::tan(up)) / kStep,
+                0.8);
   }
 }
 
