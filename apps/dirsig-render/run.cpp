@@ -276,7 +276,11 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
   }
 }
 
-Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
+Simulation simulation_of(const RenderOptions& o, SimulationCallbacks& callbacks, bool alone) {
+  // The first scene gives a simulation its frame.
+  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
+    return read_scene_origin(scenes.front().path).origin;
+  };
   Simulation sim = is_of_dirsig(o.simulation)   ? import_simulation(o, callbacks, alone)
                    : is_of_helios(o.simulation) ? import_survey(o, callbacks)
                                                 : read_simulation(o.simulation, callbacks, o.settings);
@@ -335,10 +339,6 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
     writer->take(delivery);
     flags.take(delivery);
     ++delivered;
-  };
-  // The first scene gives a simulation its frame.
-  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
-    return read_scene_origin(scenes.front().path).origin;
   };
   Simulation sim = simulation_of(o, callbacks, !ranks);
   LidarJobs lidars(cli, o, sim, ranks != nullptr);

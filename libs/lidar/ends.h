@@ -1,6 +1,6 @@
-// The two ends of a lidar's paths as lights of the path kernel: whichever a path does not begin at is asked for at every
-// node. Both are points that nothing meets by chance, stand where the pulse of the ray's time has them, and are found
-// through smooth interfaces like lamps (LightNature::placed).
+// The two ends of a lidar's paths as lights of the path kernel: whichever a path does not begin at is asked for at
+// every node. Both are points that nothing meets by chance, stand where the pulse of the ray's time has them, and are
+// found through smooth interfaces like lamps (LightNature::placed).
 //   LaserEnd      scale = density of the beam, 1/sr, over the squared distance: irradiance of a unit energy
 //   ReceiverEnd   scale = importance, m2, over the squared distance. Of a path that leaves the laser with a unit energy
 //                 that is the energy on the focal plane, by reciprocity; which pixel's tells the spectrum (pixel_of)
@@ -8,8 +8,8 @@
 #pragma once
 #include <vector>
 
-#include "lidar/laser_beam.h"
 #include "lidar/field.h"
+#include "lidar/laser_beam.h"
 #include "lidar/pulse_at_work.h"
 #include "light/light.h"
 

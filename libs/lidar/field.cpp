@@ -32,7 +32,8 @@ auto ReceiverField::at(Dir local) const -> std::optional<Seen> {
   if (!(cosine > 0)) return std::nullopt;
   // The angle by its tangent: a cosine cannot tell narrow fields.
   if (stop())
-    return std::atan2(std::hypot(local.x, local.y), cosine) < half_ ? std::optional(Seen{0, importance_}) : std::nullopt;
+    return std::atan2(std::hypot(local.x, local.y), cosine) < half_ ? std::optional(Seen{0, importance_})
+                                                                    : std::nullopt;
   const double c = local.x / cosine / pitch_ + 0.5 * columns_, r = 0.5 * rows_ - local.y / cosine / pitch_;
   if (!(c >= 0 && c < columns_ && r >= 0 && r < rows_)) return std::nullopt;
   return Seen{static_cast<uint32_t>(r) * columns_ + static_cast<uint32_t>(c), importance_ / (cosine * cosine * cosine)};

@@ -38,8 +38,8 @@ class ReceiverField {
  private:
   bool stop() const { return pitch_ == 0; }
   uint32_t columns_ = 1, rows_ = 1;
-  double pitch_ = 0;  // of the tangent plane; 0: one detector behind a field stop
-  double half_ = 0;   // rad, of the stop
+  double pitch_ = 0;   // of the tangent plane; 0: one detector behind a field stop
+  double half_ = 0;    // rad, of the stop
   double height_ = 0;  // 1 - cosine of it
   double importance_ = 0;
 };

@@ -2,17 +2,18 @@
 // pixel, by the one-sample balance heuristic of both. A beam much narrower than the field is then never missed, and
 // neither is what lies beside it.
 //
-// The beam is seen from the receiver as a spot on a sphere about the laser: p_receiver = p_beam s^2 / (R^2 cos), s the
-// way from the receiver to the sphere of radius R, cos that of the angle at which it is met. One sphere stands at what
-// the beam's axis meets; where the baseline moves the spot by more than a part of its width over the gate there are
-// more, in equal steps of the logarithm.
+// The beam is seen from the receiver as a spot on a plane across its axis: p_receiver = p_plane s^2 / cos, s the way
+// from the receiver to the plane, cos that of the angle at which it is met. One plane stands at what the axis meets;
+// where the baseline moves the spot by more than a part of its width over the gate there are more, in equal steps of
+// the logarithm of their distances.
 // Based on: E. Veach, "Robust Monte Carlo methods for light transport simulation", 1997, section 9.2.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
-#include "lidar/laser_beam.h"
 #include "lidar/field.h"
+#include "lidar/laser_beam.h"
 #include "lidar/pulse_at_work.h"
 
 namespace suite {
@@ -32,13 +33,19 @@ class FirstDirection {
   Drawn draw(const PulseAtWork& pulse, size_t pixel, const std::array<double, 4>& u) const;
 
  private:
-  static constexpr size_t kMostSpheres = 9;
-  struct Spheres {
-    std::array<double, kMostSpheres> radius;
+  static constexpr size_t kMostPlanes = 9;
+  struct Planes {
+    std::array<double, kMostPlanes> distance;  // m from the laser
     size_t count = 0;
+    // Half of the draws are for the plane at what the axis meets, the others share the rest.
+    double share(size_t k) const { return count == 1 ? 1 : k == 0 ? 0.5 : 0.5 / static_cast<double>(count - 1); }
+    size_t choose(double u) const {
+      if (count == 1 || u < 0.5) return 0;
+      return std::min(count - 1, 1 + static_cast<size_t>((2 * u - 1) * static_cast<double>(count - 1)));
+    }
   };
-  Spheres spheres(const PulseAtWork& pulse) const;
-  double beam_density(const PulseAtWork& pulse, const Spheres& spheres, Dir direction) const;
+  Planes planes(const PulseAtWork& pulse) const;
+  double beam_density(const PulseAtWork& pulse, const Planes& planes, Dir direction) const;
   const LaserBeam& beam_;
   const ReceiverField& field_;
   double near_, far_;

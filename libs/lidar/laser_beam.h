@@ -16,7 +16,7 @@ namespace suite {
 
 class LaserBeam {
  public:
-  static constexpr double kNarrowest = 1e-7;  // rad, half-angle
+  static constexpr double kNarrowest = 1e-6;  // rad, half-angle: what hits on large triangles are exact to
 
   // Error: angles out of range, an image of no energy, or one with a waist.
   explicit LaserBeam(const BeamProfile& profile);
@@ -40,7 +40,7 @@ class LaserBeam {
   double cells_density(Vec2 q) const;
   Vec2 sample_cells(Vec2 u) const;
   BeamProfile profile_;
-  double edge_ = 0;                 // tangent
+  double edge_ = 0;  // tangent
   double solid_angle_ = 0, width_ = 0;
   std::vector<double> cumulative_;  // of the image, up to 1
 };

@@ -26,8 +26,21 @@ Environment LineKit::bake(const Tracer& tracer, SourceSpecs passive, double time
   return bake_environment(passive, tracer, false, optics.state());
 }
 
+bool LineKit::leaves(size_t medium) const {
+  const std::vector<Medium>& named = surface.tracer().scene().media;
+  return medium < named.size() && medium < optics.media().size() && named[medium].phase.model == "leaves";
+}
+
+bool LineKit::any_leaves() const {
+  for (size_t m = 0; m < optics.media().size(); ++m)
+    if (leaves(m)) return true;
+  return false;
+}
+
 bool LineKit::shines() const {
+  constexpr double kWarm = 2.5;  // um: beyond it the air glows
   if (!environment.lights.empty() || optics.any_emission()) return true;
+  if (environment.atmosphere && wavelength_um > kWarm) return true;
   const auto& materials = surface.tracer().scene().materials;
   for (uint32_t m = 0; m < materials.size(); ++m)
     if (!optics.material(m).blackbody.empty()) return true;

@@ -22,6 +22,9 @@ class LineKit {
   double photons_of_joule;
   // Whether anything shines but the laser.
   bool shines() const;
+  // Whether a medium (number of Optics::media()) is leaves.
+  bool leaves(size_t medium) const;
+  bool any_leaves() const;
 
  private:
   static SpectralState state_of(double wavelength_um, double width_um);

@@ -10,11 +10,11 @@
 namespace suite {
 
 struct PulseAtWork {
-  uint64_t number = 0;  // of the train
-  ResponsePulse pulse;  // received when light from `range` is back
-  double time = 0;      // s, of its rays, scene time; no other pulse at work has the same
+  uint64_t number = 0;   // of the train
+  ResponsePulse pulse;   // received when light from `range` is back
+  double time = 0;       // s, of its rays, scene time; no other pulse at work has the same
   Pose laser, receiver;  // from their frames to ENU
-  double range = 0;      // m, along the beam's axis to what it meets first; the middle of the gate where that is nothing
+  double range = 0;  // m, along the beam's axis to what it meets first; the middle of the gate where that is nothing
   Dir at_laser(Dir d) const { return rotate(laser.rotation.conjugate(), d); }
   Dir at_receiver(Dir d) const { return rotate(receiver.rotation.conjugate(), d); }
 };

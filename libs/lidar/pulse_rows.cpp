@@ -25,12 +25,12 @@ struct PulseRows::Job {
   uint32_t waiting = 0;  // started paths
 
   Job(const LineKit& kit, Environment lit, const PipelineOptions& method, uint16_t end_, const ReceiverEnd* receiver,
-      uint32_t orders, bool tags, bool passive_, bool active_)
+      uint32_t orders, bool without_first, bool tags, bool passive_, bool active_)
       : environment(std::move(lit)),
         options(method),
         context{kit.surface, kit.optics, environment, options, tags},
         end(end_),
-        sink(kWave, end, receiver, orders),
+        sink(kWave, end, receiver, orders, without_first),
         throughputs(kWave, kit.optics.state().size(), 1),
         kernel(make_kernel(choose_kernel(context), context, kWave, throughputs, sink)),
         passive(passive_),
@@ -54,13 +54,13 @@ PulseRows::PulseRows(const TracePlan& plan, const LineKit& kit)
                                                                : FirstDirection::InField::needed) {
   const size_t bins = kit.optics.state().size();
   SUITE_CHECK_EQ(bins, size_t{1});
-  if (!plan.laser_first) {
-    active_ = make_job(std::make_shared<LaserEnd>(plan.beam, pulses_, bins), nullptr, kit.shines());
-    return;
-  }
-  auto receiver = std::make_shared<ReceiverEnd>(plan.field, pulses_, bins);
-  const ReceiverEnd* const seen = receiver.get();
-  active_ = make_job(std::move(receiver), seen, false);
+  std::shared_ptr<const ReceiverEnd> receiver;
+  if (plan.laser_first) receiver = std::make_shared<ReceiverEnd>(plan.field, pulses_, bins);
+  std::shared_ptr<const Light> end = receiver;
+  if (!end) end = std::make_shared<LaserEnd>(plan.beam, pulses_, bins);
+  if (FirstScattering::any(kit)) once_ = std::make_unique<FirstScattering>(kit, *end);
+  active_ = make_job(std::move(end), receiver.get(), !plan.laser_first && kit.shines());
+  if (!plan.laser_first) return;
   if (kit.shines()) passive_ = make_job(nullptr, nullptr, true);
 }
 
@@ -78,12 +78,16 @@ auto PulseRows::make_job(std::shared_ptr<const Light> end, const ReceiverEnd* re
   method.seed = plan_.options.seed;
   method.gloss_photons = 0;
   if (!passive) {  // passive light has no last order
-    method.max_nodes = static_cast<int>(std::min<uint32_t>(plan_.instrument.orders, 1u << 20));
+    const KernelContext context{kit_.surface, kit_.optics, lit, method};
+    // Smooth interfaces are no orders of their own: a path may pass some more.
+    constexpr uint32_t kPasses = 16;
+    const uint32_t more = refracts(context) ? kPasses : 0;
+    method.max_nodes = static_cast<int>(std::min<uint32_t>(plan_.instrument.orders, 1u << 20) + more);
     method.max_scatterings = plan_.instrument.orders;
   }
   const bool tags = !plan_.channel_of_object.empty();
   auto job = std::make_unique<Job>(kit_, std::move(lit), method, active ? index : uint16_t{0xfffd}, receiver,
-                                   plan_.instrument.orders, tags, passive, active);
+                                   plan_.instrument.orders, once_ != nullptr, tags, passive, active);
   if (tags) job->sink.tell_apart(plan_.channel_of_object, *job->kernel);
   return job;
 }
@@ -113,6 +117,17 @@ SensorRay PulseRows::from_laser(const PulseAtWork& pulse, const SampleStream& st
   return {{pulse.laser.point(start.place), pulse.laser.vector(start.direction), pulse.time}, 1};
 }
 
+// Places on the first ray where matter scatters: as many that, over the paths of a scramble, most range bins of the
+// gate have one.
+void PulseRows::scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray, const FirstScattering::Strata& strata,
+                             RangeSink::Lane& lane) {
+  const Vec3 end = plan_.laser_first ? pulse.receiver.translation : pulse.laser.translation;
+  const double start = pulse.pulse.start, stop = start + static_cast<double>(plan_.head.bins) * plan_.head.bin;
+  once_->trace(ray, end, {start * kSpeedOfLight, stop * kSpeedOfLight}, strata, scattered_);
+  for (const FirstScattering::Scattered& s : scattered_) job.sink.add_single(lane, s.arrival, s.light, s.spectrum);
+  lane.once_at_surface = once_->surface_share();
+}
+
 // Scramble s of n paths has those that are left over by one each from the first on.
 void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseReport& report) {
   const size_t pixels = range.last_pixel - range.first_pixel;
@@ -121,8 +136,8 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
   for (size_t k = 0; k < pulses_.size(); ++k) {
     const PulseAtWork& pulse = pulses_[k];
     for (size_t pixel = range.first_pixel; pixel < (from_laser ? range.first_pixel + 1 : range.last_pixel); ++pixel) {
-      const uint64_t key = SampleStream::problem_key(plan_.options.seed, plan_.instrument_key,
-                                                     hash_of(pulse.number, pixel, job.active));
+      const uint64_t key =
+          SampleStream::problem_key(plan_.options.seed, plan_.instrument_key, hash_of(pulse.number, pixel, job.active));
       RangeBins* const row = &rows_[k * pixels + pixel - range.first_pixel];
       for (uint64_t s = 0; s < scrambles; ++s) {
         const SampleStream stream(key, static_cast<uint32_t>(s));
@@ -130,11 +145,16 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
         for (uint32_t sample = 0; sample < count; ++sample) {
           const std::array<double, 4> u = stream.draw(sample, dimensions::kSensor.first);
           RangeSink::Lane lane{row, static_cast<int>(s), pulse.pulse.energy * kit_.photons_of_joule, 0};
-          const SensorRay ray = from_laser ? this->from_laser(pulse, stream, sample, u)
-                                           : from_receiver(job, pulse, pixel, u, lane);
+          SensorRay ray =
+              from_laser ? this->from_laser(pulse, stream, sample, u) : from_receiver(job, pulse, pixel, u, lane);
           lane.active /= count, lane.passive /= count;
           row->add_paths(job.active ? 1 : 0);
           if (lane.active == 0 && lane.passive == 0) continue;
+          ray.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));  // as the kernel's path has it
+          if (once_ && lane.active > 0)
+            scatter_once(job, pulse, ray.ray,
+                         {sample, count, std::clamp(plan_.head.bins / count, 4u, 128u), hash_of(key, s, 0x6f6e6365)},
+                         lane);
           const uint32_t p = job.waiting++;
           job.sink.begin(p, lane);
           job.throughputs.begin(p, 1, nullptr);

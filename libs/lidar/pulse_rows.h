@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lidar/first_direction.h"
+#include "lidar/first_scattering.h"
 #include "lidar/line_kit.h"
 #include "lidar/range_sink.h"
 #include "lidar/trace.h"
@@ -45,6 +46,8 @@ class PulseRows {
   struct Job;  // one kernel and what it needs
   std::unique_ptr<Job> make_job(std::shared_ptr<const Light> end, const ReceiverEnd* receiver, bool passive);
   void run(Job& job, const RowRange& range, bool from_laser, PulseReport& report);
+  void scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray, const FirstScattering::Strata& strata,
+                    RangeSink::Lane& lane);
   SensorRay from_receiver(Job& job, const PulseAtWork& pulse, size_t pixel, const std::array<double, 4>& u,
                           RangeSink::Lane& lane) const;
   SensorRay from_laser(const PulseAtWork& pulse, const SampleStream& stream, uint32_t sample,
@@ -54,6 +57,8 @@ class PulseRows {
   PulsesAtWork pulses_;
   FirstDirection directions_;
   std::vector<RangeBins> rows_;
+  std::unique_ptr<FirstScattering> once_;  // null: nothing scatters but surfaces
+  std::vector<FirstScattering::Scattered> scattered_;
   std::unique_ptr<Job> active_, passive_;  // passive: where paths leave the laser and anything shines
 };
 

@@ -15,10 +15,12 @@ class RangeSink final : public Sink<SpectralThroughputs> {
     RangeBins* rows = nullptr;  // its row, or those of all pixels where paths leave the laser
     int scramble = 0;
     double active = 0, passive = 0;  // photons of radiance 1 in them; 0: not asked for
+    double once_at_surface = 1;      // times what surfaces scatter once
   };
   // end: the index of the lidar's light in the environment; receiver: null where paths leave it. orders: at most.
-  RangeSink(size_t width, uint16_t end, const ReceiverEnd* receiver, uint32_t orders)
-      : lanes_(width), end_(end), receiver_(receiver), orders_(orders) {}
+  // without_first: what matter scatters once comes from elsewhere (first_scattering.h).
+  RangeSink(size_t width, uint16_t end, const ReceiverEnd* receiver, uint32_t orders, bool without_first)
+      : lanes_(width), end_(end), receiver_(receiver), orders_(orders), without_first_(without_first) {}
   // channel_of: of the object that a path has met first (FirstMeeting::object); empty: there are no such channels.
   // kernel: whose sink this is.
   void tell_apart(std::vector<size_t> channel_of_object, PathTracing& kernel) {
@@ -26,6 +28,8 @@ class RangeSink final : public Sink<SpectralThroughputs> {
   }
   void begin(uint32_t p, const Lane& lane) { lanes_[p] = lane; }
   uint64_t failures() const { return failures_; }
+  // Light of a lane that has been found elsewhere: photons = lane.active times light. spectrum: of the end.
+  void add_single(const Lane& lane, double arrival, double light, const float* spectrum);
 
   void add(std::span<const Contribution> stage, SpectralThroughputs& throughputs) override;
 
@@ -35,6 +39,7 @@ class RangeSink final : public Sink<SpectralThroughputs> {
   uint16_t end_;
   const ReceiverEnd* receiver_;
   uint32_t orders_;
+  bool without_first_;
   std::vector<size_t> channel_of_object_;
   PathTracing* kernel_ = nullptr;
   uint64_t failures_ = 0;

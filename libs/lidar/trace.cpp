@@ -46,23 +46,29 @@ std::vector<size_t> channels_of(const LidarInstrument& instrument, const Tracer&
     return at == instrument.tags.end() ? size_t{0} : static_cast<size_t>(at - instrument.tags.begin()) + 2;
   };
   channels.assign(tracer.object_count(), 0);
-  tracer.each("surfaces with channels of a lidar", [](const TracedObject&) { return true; },
-              [&](uint32_t o, const TracedObject& object) {
-                if (object.tag != kNone) channels[o] = channel(scene.tags[object.tag]);
-              });
+  tracer.each(
+      "surfaces with channels of a lidar", [](const TracedObject&) { return true; },
+      [&](uint32_t o, const TracedObject& object) {
+        if (object.tag != kNone) channels[o] = channel(scene.tags[object.tag]);
+      });
   return channels;
 }
 
-// From the emission of the first pulse to the end of the last one's gate.
+// From the emission of the first pulse to the end of the last one's gate; pulses without a beam do not count.
 TimeSpan window_of(const LidarInstrument& instrument, uint64_t first, uint64_t last) {
-  TimeSpan span{kEver, -kEver};
-  for (const uint64_t at : {first, last - 1}) {
-    const auto pulse = instrument.pulses->pulse(at);
-    if (!pulse) continue;
-    span.begin = std::min(span.begin, pulse->time);
-    span.end = std::max(span.end, pulse->time + pulse->start + instrument.gate.stop);
-  }
-  return span.begin <= span.end ? span : TimeSpan{};
+  std::optional<ResponsePulse> begin, end;
+  for (uint64_t at = first; at < last && !begin; ++at) begin = instrument.pulses->pulse(at);
+  for (uint64_t at = last; at > first && begin && !end; --at) end = instrument.pulses->pulse(at - 1);
+  if (!begin || !end) return {};
+  return {begin->time, end->time + end->start + instrument.gate.stop};
+}
+
+// Rows of a piece. Where matter scatters, every range bin of a row is filled, some hundred bytes each while it is
+// traced.
+size_t rows_at_once(const Scene& scene, const SourceSpecs& passive, const ResponseHead& head) {
+  constexpr size_t kMost = 256, kBins = 200000;
+  if (!uses_media(scene) && !passive.has_air()) return kMost;
+  return std::clamp<size_t>(kBins / head.bins, 1, kMost);
 }
 
 class Tracing {
@@ -74,6 +80,7 @@ class Tracing {
         tracer_(scene_, std::nullopt, changes_in_time(*scene_) ? window : TimeSpan{}, cut_out(*scene_)),
         head_(response_head(*scene_, instrument)),
         passive_(passive),
+        rows_at_once_(rows_at_once(*scene_, passive, head_)),
         plan_{tracer_,
               instrument,
               options,
@@ -105,6 +112,7 @@ class Tracing {
   Tracer tracer_;
   ResponseHead head_;
   SourceSpecs passive_;
+  size_t rows_at_once_;
   TracePlan plan_;
   std::map<double, std::unique_ptr<const LineKit>> kits_;
   std::mutex mutex_;
@@ -149,8 +157,8 @@ void clear_negative(ResponseBlock& block) {
 
 void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport& report) {
   // Pieces are the same however many threads take them, and start where they would for the whole train.
-  constexpr uint64_t kRows = 256, kPiecesAtOnce = 32;
-  const uint64_t pixels = plan_.field.pixels(), pulses = std::max<uint64_t>(1, kRows / pixels);
+  constexpr uint64_t kPiecesAtOnce = 32;
+  const uint64_t pixels = plan_.field.pixels(), pulses = std::max<uint64_t>(1, rows_at_once_ / pixels);
   for (uint64_t at = first; at < last;) {
     stop_point();
     const uint64_t end = std::min(last, (at / pulses + kPiecesAtOnce) * pulses);
@@ -158,8 +166,8 @@ void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport
       clear_negative(block);
       for (size_t e = 0; e < block.entries(); ++e)
         if (block.bin[e] > 0)
-          report.photons += block.value[e * head_.channels.size() + kSingle] +
-                            block.value[e * head_.channels.size() + kMultiple];
+          report.photons +=
+              block.value[e * head_.channels.size() + kSingle] + block.value[e * head_.channels.size() + kMultiple];
       report.pulses += block.pulses.size();
       if (!block.pulses.empty()) sink.take(std::move(block));
     }
@@ -167,12 +175,11 @@ void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport
     at = end;
   }
   report.laser_first = plan_.laser_first;
-  for (const auto& [um, line] : kits_) report.passive |= line && line->shines();
+  for (const auto& [um, line] : kits_) report.passive |= line->shines(), report.hot_spot |= line->any_leaves();
   if (report.paths > 0) report.truncated /= static_cast<double>(report.paths);
 }
 
 std::vector<ResponseBlock> Tracing::trace(uint64_t first, uint64_t last, PulseReport& report) {
-  constexpr size_t kRows = 256;
   std::vector<std::optional<PulseAtWork>> begun(last - first);
   parallel_for(0, begun.size(), 64, [&](size_t a, size_t b) {
     const FlushDenormals flush;
@@ -180,7 +187,7 @@ std::vector<ResponseBlock> Tracing::trace(uint64_t first, uint64_t last, PulseRe
     for (size_t i = a; i < b; ++i) begun[i] = begin_pulse(plan_.instrument, first + i, tracer_, statistics);
   });
   // Blocks: neighbours in number and line.
-  const size_t pixels = plan_.field.pixels(), most = std::max<size_t>(1, kRows / pixels);
+  const size_t pixels = plan_.field.pixels(), most = std::max<size_t>(1, rows_at_once_ / pixels);
   std::vector<std::vector<PulseAtWork>> groups;
   for (size_t i = 0; i < begun.size(); ++i) {
     if (!begun[i]) {
@@ -196,7 +203,7 @@ std::vector<ResponseBlock> Tracing::trace(uint64_t first, uint64_t last, PulseRe
   }
   std::vector<Piece> pieces;
   std::vector<size_t> block_of;
-  const size_t step = plan_.laser_first ? pixels : std::min(pixels, kRows);
+  const size_t step = plan_.laser_first ? pixels : std::min(pixels, rows_at_once_);
   for (size_t g = 0; g < groups.size(); ++g)
     for (size_t pixel = 0; pixel < pixels; pixel += step) {
       pieces.push_back({{groups[g], pixel, std::min(pixels, pixel + step)}, {}, {}});

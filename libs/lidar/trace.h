@@ -6,6 +6,10 @@
 // two delta lights (ends.h) and estimate the same light; what is narrower should begin (StartFrom::automatic).
 // Passive light (sun, sky, lamps, what is warm) comes by paths that begin at the receiver and stands in bin 0.
 //
+// What matter scatters once has places of its own in every range bin (first_scattering.h). Leaves that fill space as
+// matter (phase function `leaves`) let out what they let in where laser and receiver are together.
+// Orders count scattering: smooth surfaces, which only turn light, are passed without one, so that a bed under flat
+// water is seen by single scattering. Light that smooth surfaces alone bring back (corner cubes) is not found.
 // Arrival is the optical path with the group index of the matter on it, where that is known, else its phase index; the
 // air counts as vacuum, in arrivals and in ResponseHead::group_index alike.
 // Assumes: reciprocal surfaces; an aperture and a laser that are points but for the beam's waist; spectra alone, no
@@ -42,6 +46,7 @@ struct PulseReport {
   double truncated = 0;      // share of the light that was cut at the last order, at most
   bool laser_first = false;  // where paths began
   bool passive = false;      // there is light in bin 0
+  bool hot_spot = false;     // leaves that fill space were passed once by light scattered once (first_scattering.h)
 };
 
 // What the blocks of an instrument belong to. scene: for its origin.

@@ -27,8 +27,8 @@ struct Medium {
 // isotropic scattering when none is named), a sane temperature. Error located at `where` otherwise.
 void check_medium(Medium& medium, const Where& where = {});
 
-// n - wavelength dn/dwavelength of an index of refraction, the slope taken over 2 % of the wavelength, as far as the curve
-// reaches: what pulses are delayed by. Based on: M. Born & E. Wolf, "Principles of optics", section 1.3.4.
+// n - wavelength dn/dwavelength of an index of refraction, the slope taken over 2 % of the wavelength, as far as the
+// curve reaches: what pulses are delayed by. Based on: M. Born & E. Wolf, "Principles of optics", section 1.3.4.
 double group_index(const Curve& index, double wavelength_um);
 
 // Per bin of a state. Error when a curve does not cover the state.

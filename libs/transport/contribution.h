@@ -47,6 +47,7 @@ enum class WaterSeen : uint8_t {
 struct Contribution {
   uint32_t path = 0;                     // lane of the kernel
   uint32_t order = 0;                    // scattering events between the light and the sensor
+  uint32_t smooth = 0;                   // of them those at smooth surfaces, which only turn light
   uint16_t light = kFromMatter;          // index into Environment::lights, or kFromMatter, kFromAir
   uint8_t events = 0;                    // kinds of events on the way, a set of EventKind
   bool asked = false;                    // an explicit sample; else met by chance

@@ -11,7 +11,6 @@
 // made for each combination that occurs in kernels.cpp. Definitions: kernel_*.h. Based on: Goodenough & Brown, section
 // IV; Veach, "Robust Monte Carlo methods for light transport simulation", 1997.
 #pragma once
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -145,8 +144,6 @@ class PathKernel final : public PathTracing {
   bool is_behind_earth(const Ray& ray, double length) const {
     return environment_.earth && environment_.earth->meet(ray.origin, ray.direction, length);
   }
-  // m, from a surface to where a ray that leaves it starts (Tracer::leave), along the ray: arrivals count it.
-  static double step_along(const Hit& hit, Dir in) { return double{hit.step} * std::fabs(dot(in, hit.normal)); }
   // From where a path stands to what its ray has met, m.
   double way_to(const Hit& hit, const Path& path) const {
     constexpr double kForever = std::numeric_limits<double>::infinity();

@@ -92,7 +92,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.time = ray.ray.time;
   path.length = path.arrival = path.last_density = 0;
   path.before = 1;
-  path.surfaces = path.scatterings = path.flights = 0, path.events = 0;
+  path.surfaces = path.scatterings = path.smooth = path.flights = 0, path.events = 0;
   if (refracted_) path.claims.clear();  // else nobody makes or reads claims
   path.branch = Branch::none, path.sided = false;
   path.share = 1;

@@ -209,6 +209,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   }
   const Hit& hit = hits_[node.slot];
   path.events |= on.dirac ? by_surface | by_dirac : by_surface;
+  path.smooth += on.dirac;
   const bool passed = passes(node, on);
   if (passed) space_.cross(p, hit, surfaces_.material(p), on.in);
   path.origin = surface_.tracer().leave(hit, on.in);

@@ -250,6 +250,7 @@ Contribution& PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(
   c.asked = c.beam = false;
   c.water = path.water == WaterSeen::mirrored ? WaterSeen::other : path.water;
   c.order = path.order();
+  c.smooth = path.smooth;
   c.scale = 1;
   c.factor = {};
   c.radiance = nullptr;

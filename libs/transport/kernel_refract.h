@@ -193,6 +193,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind(const Ref
     c.beam = q.beam;
     c.water = water;
     c.order += static_cast<uint32_t>(way.events) + reached.scatterings;
+    c.smooth += static_cast<uint32_t>(way.events);
     c.scale = static_cast<float>(from_light->scale * way.spreading * way.trials * reached.scale);
     c.factor = {1, reached.through.data()};
     c.radiance = from_light->spectrum;

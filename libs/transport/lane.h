@@ -1,6 +1,7 @@
 // A path on its way: what the kernel must remember of it from one event to the next.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "light/light.h"
@@ -19,6 +20,9 @@ enum class Branch : uint8_t {
   open,    // as it comes: scattered on the next flight or not
   forced,  // guided, and scattered on the next flight for certain
 };
+
+// m, from a surface to where a ray that leaves it starts (Tracer::leave), along the ray: arrivals count it.
+inline double step_along(const Hit& hit, Dir in) { return double{hit.step} * std::fabs(dot(in, hit.normal)); }
 
 // K: knots at most.
 template <int K>
@@ -47,6 +51,7 @@ struct Lane {
   double share = 1;          // of a path's light, where it goes on in parts
   uint32_t surfaces = 0;     // met so far, the receiver included
   uint32_t scatterings = 0;  // in media so far
+  uint32_t smooth = 0;       // smooth surfaces so far, of those met
   uint32_t flights = 0;      // through media so far
   uint8_t events = 0;        // EventKind so far
   uint8_t received = 0;      // 1: starts at a receiver

@@ -9,15 +9,16 @@
 
 namespace suite::test {
 
-// Pulses a microsecond apart from one pose each; a receiver that moves with `velocity` (m/s) is elsewhere at reception.
+// Pulses from one pose each; a receiver that moves with `velocity` (m/s) is elsewhere at reception.
 struct StillTrain final : PulseTrain {
   uint64_t count = 1;
   ResponsePulse like;
   Vec3 velocity;
+  double spacing = 1e-6;  // s
   uint64_t size() const override { return count; }
   std::optional<ResponsePulse> pulse(uint64_t i, double round_trip) const override {
     ResponsePulse p = like;
-    p.time = 1e-6 * static_cast<double>(i);
+    p.time = spacing * static_cast<double>(i);
     p.emission.translation += velocity * p.time;
     p.reception = p.emission;
     p.reception.translation += velocity * round_trip;
@@ -40,7 +41,9 @@ struct DownLidar : LidarInstrument {
     gate = {2 * low / kSpeedOfLight, 2 * high / kSpeedOfLight, bin};
     train->like.start = gate.start;
   }
-  double photons() const { return train->like.energy * train->like.wavelength_um * 1e-6 / (kPlanckConstant * kSpeedOfLight); }
+  double photons() const {
+    return train->like.energy * train->like.wavelength_um * 1e-6 / (kPlanckConstant * kSpeedOfLight);
+  }
   std::shared_ptr<StillTrain> train;
 };
 

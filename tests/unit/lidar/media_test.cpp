@@ -1,0 +1,230 @@
+// Pulses through matter and by many orders against closed forms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/lidar_kit.h"
+
+namespace suite::test {
+namespace {
+
+// A layer of 100 m with a backscatter coefficient beta = extinction / S: photons of single scattering
+// N0 beta A (exp(-2 alpha (R - R0)) / R^2 integrated): 48 688.9 for N0 = 1e15, 88.2697 in the first ns (16 significant
+// digits by quadrature).
+TEST(LidarMedia, ALayerReturnsItsAttenuatedBackscatter) {
+  const double alpha = 1e-3, S = 30, low = 1000, high = 1100;
+  const double scattering = 4 * kPi * alpha / S;  // isotropic
+  const auto scene = slab_scene(medium(Curve::constant(alpha - scattering), Curve::constant(scattering)), high - low);
+  for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+    DownLidar lidar(high, 16);
+    lidar.train->like.energy *= 1e15 / lidar.photons();
+    lidar.laser.beam.full_angle_1_e2 = 0.5e-3;
+    lidar.receiver.aperture = 0.15, lidar.receiver.field_of_view = 2e-3;
+    lidar.gate_of(low - 1, high + 1, 1e-9);
+    lidar.start_from = from;
+    lidar.paths = 256, lidar.orders = 1;
+    const Received got = receive(scene, lidar);
+    const RunningStats rows = got.rows();
+    EXPECT_NEAR(rows.mean(), 48688.9, 4 * rows.stderr_of_mean());
+    EXPECT_LT(rows.stderr_of_mean(), 2e-3 * 48688.9);
+    // The first ns of light that is scattered in the layer.
+    lidar.gate_of(low, low + 2, 1e-9);
+    const Received start = receive(scene, lidar);
+    const auto cut = start.bin(1);
+    EXPECT_NEAR(cut.photons / 16, 88.2697, 4 * cut.error() / 16 + 1e-3 * 88.2697);
+    EXPECT_LT(cut.error(), 0.01 * cut.photons);
+  }
+}
+
+// Water of group index n_g under a flat surface: the bed's return comes 2 D n_g / c after the surface's place, weakened
+// by T^2 exp(-2 K D) (H / (n H + D))^2 against the same bed in air at H. For H 400 m, D 10 m, n 1.33, K 0.05 1/m:
+// 0.192409.
+std::shared_ptr<Scene> bed(double depth, const Curve& index, double absorption) {
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {material("bed", lambert(0.3)),
+                      material("water", {"dielectric", {}, {{"index", index}}, {}, nullptr})};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -depth}));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 1);
+  scene->media = {medium(Curve::constant(absorption), Curve::constant(0))};
+  scene->media[0].index = index;
+  scene->materials[1].inside = 0;
+  check_scene(*scene, "bed");
+  return scene;
+}
+
+TEST(LidarMedia, TheBedUnderFlatWaterReturnsLateAndWeak) {
+  const double H = 400, D = 10, n = 1.33, K = 0.05;
+  for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+    DownLidar lidar(H, 16);
+    lidar.laser.beam.full_angle_1_e2 = 0.5e-3;
+    lidar.receiver.aperture = 0.15, lidar.receiver.field_of_view = 2e-3;
+    lidar.gate_of(H - 1, H + 30, 1e-10);
+    lidar.start_from = from;
+    lidar.paths = 256, lidar.orders = 1;
+    const Received got = receive(bed(D, Curve::constant(n), K), lidar);
+    const double in_air = lidar.photons() * 0.3 / kPi / (H * H) * kPi * 0.15 * 0.15 / 4;
+    const RunningStats rows = got.rows();
+    EXPECT_NEAR(rows.mean(), 0.192409 * in_air, 4 * rows.stderr_of_mean() + 1e-4 * in_air);
+    EXPECT_LT(rows.stderr_of_mean(), 2e-3 * rows.mean());
+    EXPECT_EQ(got.total(kMultiple).photons, 0) << "the bed is seen by single scattering";
+    double sum = 0, first = 0;
+    for (const ResponseBlock& b : got.blocks)
+      for (size_t e = 0; e < b.entries(); ++e) {
+        const double v = b.value[2 * e] + b.value[2 * e + 1];
+        sum += v, first += v * (lidar.gate.start + (b.bin[e] - 0.5) * lidar.gate.bin);
+      }
+    EXPECT_NEAR(first / sum, 2 * (H + n * D) / kSpeedOfLight, 1e-12 + 2e-14);
+  }
+}
+
+// n = 1.33 + 0.02 / wavelength^2 at 0.532 um: n_g = n - wavelength dn/dwavelength = 1.33 + 3 x 0.02 / wavelength^2.
+TEST(LidarMedia, TimeGoesByTheGroupIndex) {
+  const double H = 100, D = 10, um = 0.532;
+  std::vector<double> x, y;
+  for (double w = 0.4; w < 0.8; w += 0.002) x.push_back(w), y.push_back(1.33 + 0.02 / (w * w));
+  const Curve index(x, y, Outside::hold);
+  const double group = 1.33 + 0.06 / (um * um);
+  EXPECT_NEAR(group_index(index, um), group, 1e-4);
+  DownLidar lidar(H, 4);
+  lidar.train->like.wavelength_um = um;
+  lidar.laser.beam.full_angle_1_e2 = 0.5e-3;
+  lidar.receiver.field_of_view = 2e-3;
+  lidar.gate_of(H - 1, H + 30, 1e-10);
+  lidar.orders = 3;
+  const Received got = receive(bed(D, index, 0.05), lidar);
+  double sum = 0, first = 0;
+  for (const ResponseBlock& b : got.blocks)
+    for (size_t e = 0; e < b.entries(); ++e) {
+      const double v = b.value[2 * e] + b.value[2 * e + 1];
+      sum += v, first += v * (lidar.gate.start + (b.bin[e] - 0.5) * lidar.gate.bin);
+    }
+  const double phase = 1.33 + 0.02 / (um * um);
+  EXPECT_NEAR(first / sum, 2 * (H + group * D) / kSpeedOfLight, 2 * 1e-4 * D / kSpeedOfLight + 1e-12);
+  EXPECT_GT(std::fabs(first / sum - 2 * (H + phase * D) / kSpeedOfLight), 1e-9) << "not the phase index";
+}
+
+std::shared_ptr<Scene> half_space(double scattering, double absorption) {
+  auto scene = std::make_shared<Scene>();
+  scene->media = {medium(Curve::constant(absorption), Curve::constant(scattering))};
+  scene->materials = {boundary(0)};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0);
+  check_scene(*scene, "half space");
+  return scene;
+}
+
+// Matter everywhere: absorption takes exp(-mu_a c t) from each bin. Free flights are drawn by scattering alone, and
+// without roulette the paths are the same.
+TEST(LidarMedia, AbsorptionWeakensEveryBinByItsTime) {
+  const double mu = 0.1;
+  DownLidar lidar(0, 8);
+  lidar.laser.beam.full_angle_1_e2 = 0.1;
+  lidar.receiver.field_of_view = 1;
+  lidar.gate_of(0.5, 15, 1e-10);
+  lidar.paths = 512, lidar.orders = 32;
+  TraceOptions options;
+  options.method.roulette_after = 1000;
+  const auto fog = [&](double absorption) {
+    auto scene = std::make_shared<Scene>();
+    scene->media = {medium(Curve::constant(absorption), Curve::constant(0.5), hg(0.5))};
+    scene->ambient = 0;
+    scene->groups.push_back({"root", {}});
+    check_scene(*scene, "fog");
+    return receive(scene, lidar, {}, options);
+  };
+  const Received clear = fog(0), dim = fog(mu);
+  int compared = 0;
+  for (uint32_t bin = 1; bin < clear.head.bins; ++bin)
+    for (const int channel : {int(kSingle), int(kMultiple)}) {
+      const auto a = clear.bin(bin, channel), b = dim.bin(bin, channel);
+      if (!(a.photons > 0)) continue;
+      const double t = lidar.gate.start + (bin - 0.5) * lidar.gate.bin;
+      // Within the widths of a bin and its neighbour; places of single scattering follow the extinction.
+      const double error = channel == kSingle ? 4 * std::hypot(a.error() / a.photons, b.error() / b.photons) : 0;
+      EXPECT_NEAR(std::log(b.photons / a.photons), -mu * kSpeedOfLight * t,
+                  1.1 * mu * kSpeedOfLight * lidar.gate.bin + error)
+          << bin;
+      ++compared;
+    }
+  EXPECT_GT(compared, 1500);
+}
+
+// An isotropic half space under a wide field: all orders together are f = w H(1)^2 / (8 pi), with Chandrasekhar's H(1)
+// = 1.251260, 1.850099, 2.472793, 2.907811; the single part is w / (8 pi).
+TEST(LidarMedia, AHalfSpaceReturnsItsReflectance) {
+  const double R = 1000, scattering = 1000;
+  const struct {
+    double albedo, H1;
+    uint32_t orders;
+    uint32_t paths;
+  } cases[] = {
+      {0.5, 1.251260, 64, 512}, {0.9, 1.850099, 400, 1024}, {0.99, 2.472793, 4000, 256}, {1, 2.907811, 1000000, 16}};
+  for (const auto& c : cases) {
+    DownLidar lidar(R, 64);
+    lidar.laser.beam.full_angle_1_e2 = 1e-4;
+    lidar.receiver.field_of_view = 2e-2;
+    lidar.gate_of(R - 1, R + 100000, 1e-6);
+    lidar.paths = c.paths, lidar.orders = c.orders;
+    const Received got = receive(half_space(scattering * c.albedo, scattering * (1 - c.albedo)), lidar);
+    const double unit = lidar.photons() * kPi * lidar.receiver.aperture * lidar.receiver.aperture / 4 / (R * R);
+    const double expected = c.albedo * c.H1 * c.H1 / (8 * kPi);
+    const RunningStats rows = got.rows();
+    EXPECT_NEAR(rows.mean() / unit, expected, std::max(5e-3 * expected, 4 * rows.stderr_of_mean() / unit)) << c.albedo;
+    const auto single = got.total(kSingle);
+    EXPECT_NEAR(single.photons / 64 / unit, c.albedo / (8 * kPi), 4 * single.error() / 64 / unit + 1e-5 * c.albedo)
+        << c.albedo;
+  }
+}
+
+// A sphere with a Lambert wall, seen from its middle by a cone in every direction: of an impulse that a point of the
+// wall sends, energy per 0.5 m of path that arrives at the wall (n-fold convolutions of the chords' density l / 2, to
+// 2e-5).
+TEST(LidarMedia, AnIntegratingSphereRings) {
+  constexpr double kExpected[] = {0.06309, 0.19643, 0.35206, 0.54768, 0.22292, 0.31310,
+                                  0.35130, 0.31000, 0.27437, 0.29191, 0.27768, 0.25512};
+  struct Turning final : PulseTrain {
+    ResponsePulse like;
+    uint64_t size() const override { return 1024; }
+    std::optional<ResponsePulse> pulse(uint64_t i, double) const override {
+      ResponsePulse p = like;
+      p.time = 1e-6 * static_cast<double>(i);
+      // Fibonacci's lattice on the sphere.
+      const double z = 1 - (2.0 * static_cast<double>(i) + 1) / 1024,
+                   phi = kPi * (3 - std::sqrt(5.0)) * static_cast<double>(i), s = std::sqrt(1 - z * z);
+      const Dir to{s * std::cos(phi), s * std::sin(phi), z};
+      const Vec3 axis = cross({0, 0, -1}, to);
+      p.reception.rotation = length(axis) > 0 ? quat_about(normalized(axis), angle_between({0, 0, -1}, to)) : Quat{};
+      return p;
+    }
+  };
+  const double rho = 0.9;
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {material("wall", lambert(rho))};
+  place(*scene, PrimitiveKind::sphere, {1}, 0);
+  check_scene(*scene, "sphere");
+  DownLidar lidar(0);
+  auto train = std::make_shared<Turning>();
+  train->like = lidar.train->like;
+  lidar.pulses = train;
+  lidar.laser.beam.full_angle_1_e2 = 1e-3;
+  lidar.receiver.field_of_view = 1.5;
+  lidar.gate = {0, 9 / kSpeedOfLight, 0.005 / kSpeedOfLight};
+  lidar.paths = 32, lidar.orders = 64;
+  lidar.start_from = StartFrom::laser;
+  const Received got = receive(scene, lidar);
+  // Importance times solid angle times the mean radiance rho / pi x energy per area.
+  const double solid = 2 * kPi * (1 - std::cos(0.75)),
+               area = kPi * lidar.receiver.aperture * lidar.receiver.aperture / 4;
+  const double unit = 1024 * lidar.photons() * rho * area * solid * rho / kPi / (4 * kPi);
+  for (size_t k = 0; k < std::size(kExpected); ++k) {
+    const auto in = got.sum(
+        [&](uint32_t b) {
+          const double way = (b - 0.5) * 0.005 - 2;
+          return way > 0.5 * static_cast<double>(k) && way < 0.5 * static_cast<double>(k + 1);
+        },
+        kMultiple);
+    EXPECT_NEAR(in.photons / unit, kExpected[k], 4 * in.error() / unit + 5e-3 * kExpected[k]) << k;
+  }
+}
+
+}  // namespace
+}  // namespace suite::test
