@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/interrupt.h"
@@ -14,8 +15,10 @@
 #include "base/stopwatch.h"
 #include "detect_job.h"
 #include "formats/response/response_file.h"
+#include "guard.h"
 #include "lidar/pulse_train.h"
 #include "lidar/trace.h"
+#include "log.h"
 #include "scheduler/moments.h"
 #include "spectral/planck.h"
 
@@ -40,7 +43,7 @@ void check_lidar_usage(const Cli& cli, const Simulation& sim) {
        {"--time", "--state", "--resume", "--more", "--part", "--merge", "--plan", "--study", "--ranks", "--link"})
     if (cli.given(option))
       throw UsageError(std::string(option) +
-                       " does not go with laser radars: take them out (--set sensors.NAME=null) or leave it out");
+                       " does not go with laser radars: take them out of the text, or leave it out");
   if (!sim.sensors.empty()) return;
   for (const char* option :
        {"--target-error", "--target-floor", "--target-bands", "--stop", "--method", "--cache-memory", "--memory",
@@ -192,6 +195,23 @@ bool LidarJobs::run(const std::shared_ptr<const Scene>& scene) {
         human_count(static_cast<double>(r.paths)).c_str(), r.photons, r.outside, r.laser_first ? "laser" : "receiver"));
   }
   return true;
+}
+
+int end_by_signal(const std::string& left) {
+  emit({Dr::stopped, "stopped: " + left});
+  return 128 + stop_signal();
+}
+
+int LidarJobs::run_alone(const std::shared_ptr<const Scene>& scene, const JobOptions& options) {
+  if (options_.dry_run) {
+    check_place(options_, simulation_, false);
+    forecast();
+    return 0;
+  }
+  const RunLock lock = lock_place(options_, simulation_);
+  const bool whole = run(scene);
+  write_log(in_folder(options_.output, "render.json"), {}, options, log());
+  return whole ? 0 : end_by_signal("laser radars that were finished are in " + options_.output);
 }
 
 Json LidarJobs::log() const {

@@ -1,5 +1,5 @@
-// Laser radars of a simulation: their pulses are traced, the responses stored, and detected in one go where the text has
-// detectors.
+// Laser radars of a simulation: their pulses are traced, the responses stored, and detected in one go where the text
+// has detectors.
 #pragma once
 #include <memory>
 #include <vector>
@@ -24,6 +24,9 @@ class LidarJobs {
   void forecast() const;
   // Traces all of them. The folder is there. False: a signal has stopped it; laser radars that were finished stay.
   bool run(const std::shared_ptr<const Scene>& scene);
+  // All that a simulation without other sensors asks for, the forecast of --dry-run and render.json included. Returns
+  // the exit code.
+  int run_alone(const std::shared_ptr<const Scene>& scene, const JobOptions& options);
   // Of each that has been run, for render.json.
   Json log() const;
 
@@ -33,6 +36,9 @@ class LidarJobs {
   const Simulation& simulation_;
   std::vector<std::unique_ptr<Job>> jobs_;
 };
+
+// Tells what there is of a run that a signal has stopped; its exit code.
+int end_by_signal(const std::string& left);
 
 // um: what a scene has to be loaded for.
 std::vector<std::array<double, 2>> lidar_windows_um(const Simulation& simulation);

@@ -280,7 +280,11 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
   }
 }
 
-Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
+Simulation simulation_of(const RenderOptions& o, SimulationCallbacks& callbacks, bool alone) {
+  // The first scene gives a simulation its frame.
+  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
+    return read_scene_origin(scenes.front().path).origin;
+  };
   Simulation sim = is_of_dirsig(o.simulation)   ? import_simulation(o, callbacks, alone)
                    : is_of_helios(o.simulation) ? import_survey(o, callbacks)
                                                 : read_simulation(o.simulation, callbacks, o.settings);
@@ -313,25 +317,6 @@ void find_beforehand(const std::shared_ptr<const Scene>& scene, const Simulation
   options.prepasses = facts.light_above().passes();
 }
 
-int stopped_by_signal(const std::string& left) {
-  emit({Dr::stopped, "stopped: " + left});
-  return 128 + stop_signal();
-}
-
-// A simulation whose sensors are laser radars only.
-int run_lidars(LidarJobs& lidars, const Simulation& sim, const std::shared_ptr<const Scene>& scene,
-               const JobOptions& options, const RenderOptions& o) {
-  if (o.dry_run) {
-    check_place(o, sim, false);
-    lidars.forecast();
-    return 0;
-  }
-  const RunLock lock = lock_place(o, sim);
-  const bool whole = lidars.run(scene);
-  write_log(in_folder(o.output, "render.json"), {}, options, lidars.log());
-  return whole ? 0 : stopped_by_signal("laser radars that were finished are in " + o.output);
-}
-
 // Plug-ins come first: they may bring what is asked for.
 void mute_and_load(const RenderOptions& o) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
@@ -359,10 +344,6 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
     flags.take(delivery);
     ++delivered;
   };
-  // The first scene gives a simulation its frame.
-  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
-    return read_scene_origin(scenes.front().path).origin;
-  };
   Simulation sim = simulation_of(o, callbacks, !ranks);
   LidarJobs lidars(cli, o, sim, ranks != nullptr);
   if (!o.air_lut.empty()) return run_air_lut(o, sim);
@@ -370,13 +351,12 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   const std::vector<int> forecast = ranks_of(cli, o);
   const LinkCosts link = link_of(cli, o);
   if (forecast.empty()) check_memory(sim, options);  // other machines may have more
-
   // What can be refused is refused before rendering starts.
   const LoadedScene loaded = load_scenes(sim, options, o, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   lidars.check(scene);
-  if (sim.sensors.empty()) return run_lidars(lidars, sim, scene, options, o);
+  if (sim.sensors.empty()) return lidars.run_alone(scene, options);
   check_job(sim, *scene, options);
   const bool part = options.share && options.share->runs();
   if (o.dry_run) dry_run(scene, sim, options, o), lidars.forecast();
@@ -396,13 +376,13 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (!sim.sources.any())
     emit({Dr::no_sources, "there is no sun, no sky and no lamp: only materials with a temperature will be seen"});
   options.diagnose = emit;
-  if (!lidars.run(scene)) return stopped_by_signal("no image was begun in " + o.output);
+  if (!lidars.run(scene)) return end_by_signal("no image was begun in " + o.output);
   start_sensors(sim, options, part ? "" : o.output);
   JobReport report = run_safely(scene, sim, options, o.output, delivered);
   flags.add_to(report);
   conclude(report, options, o.output, sim, loaded, lidars, *writer);
   if (!report.stopped) return show_own(o);
-  return stopped_by_signal(what_is_left(o.output, report.captures, report.captures_asked, options));
+  return end_by_signal(what_is_left(o.output, report.captures, report.captures_asked, options));
 }
 
 }  // namespace suite

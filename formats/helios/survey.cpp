@@ -188,9 +188,8 @@ void Maker::add_sensor(const SurveyLeg& leg, const SurveyLeg* next, const Survey
   add("    pulses_in_air: unfold", w);
   add("    orders: 1", w);
   add(strf("    detectors: [{kind: linear, name: returns, quantum_efficiency: 0.8, receiver_fwhm_ns: 1, "
-           "amplifier_noise_e_per_ns: 10, returns: {by: "
-           "gaussian, threshold_e_per_ns: 100%s}}]",
-           s.most_returns > 0 ? strf(", most: %d", s.most_returns).c_str() : ""),
+           "step_ns: %.6g, amplifier_noise_e_per_ns: 10, returns: {by: gaussian, threshold_e_per_ns: 100%s}}]",
+           std::max(0.25, s.pulse_ns / 8), s.most_returns > 0 ? strf(", most: %d", s.most_returns).c_str() : ""),
       w);
 }
 

@@ -93,7 +93,8 @@ LaserSpec read_laser(const Params& p, const SensorContext& context) {
     if (v.size() != 4 || !(v[0] == 1) || !(v[1] * v[1] + v[2] * v[2] + v[3] * v[3] <= 1 + 1e-12))
       throw s->error("'stokes' is no light of intensity 1", "[1, Q, U, V] with Q2 + U2 + V2 at most 1");
     if (v[1] != 0 || v[2] != 0 || v[3] != 0)
-      throw s->error("polarised lasers are not traced: what scatters is told by intensity alone", "leave out 'stokes'");
+      throw s->error("polarised lasers are not traced: surfaces and media scatter intensity alone",
+                     "leave out 'stokes'");
   }
   return laser;
 }
