@@ -225,7 +225,8 @@ Json LidarJobs::log() const {
     j.set("pulses", r.pulses), j.set("shots_without_a_beam", r.dark);
     j.set("rows", r.rows), j.set("paths", r.paths), j.set("rejected_contributions", r.failures);
     j.set("photons", r.photons), j.set("photons_outside_of_the_gate", r.outside), j.set("truncated", r.truncated);
-    j.set("paths_begin_at", r.laser_first ? "laser" : "receiver"), j.set("passive_light", r.passive);
+    j.set("paths_begin_at", r.laser_first ? "laser" : "receiver"), j.set("passive_light", r.passive),
+        j.set("leaves_passed_once", r.hot_spot);
     j.set("range_bins", uint64_t{job->head.bins}), j.set("bin_ns", job->head.bin * 1e9);
     j.set("group_index", job->head.group_index), j.set("detected", job->detect != nullptr);
     j.set("seconds", job->seconds);
