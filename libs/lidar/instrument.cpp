@@ -9,6 +9,12 @@ std::string fault_of(const LidarInstrument& i) {
   if (!(r.throughput > 0 && r.throughput <= 1)) return "the throughput must be above 0 and at most 1";
   if (r.columns == 0 && !(r.field_of_view >= 0 && r.field_of_view <= 2))
     return "the field of view must be from 0 to 2 rad";
+  if (r.columns > 0 && !(r.rows > 0 && r.pitch > 0 && r.focal > 0))
+    return "an array needs rows, and a pitch and a focal length above 0";
+  if (uint64_t{r.columns} * r.rows > 10000000)
+    return strf("the array has %u x %u pixels, at most 1e7 are traced", r.columns, r.rows);
+  if (i.laser.stokes != std::array<double, 4>{1, 0, 0, 0})
+    return "polarisation is not traced, the Stokes vector must be [1, 0, 0, 0]";
   if (!(i.gate.bin >= 1e-13 && i.gate.bin <= 1e-6)) return "range bins must be 1e-4 to 1000 ns wide";
   if (!(i.gate.start >= 0 && i.gate.stop > i.gate.start))
     return "the gate must start at 0 or later and stop after that";

@@ -20,8 +20,8 @@ struct TracePlan {
   LaserBeam beam;
   ReceiverField field;
   bool laser_first;
-  std::vector<size_t> channel_of_object;  // empty: there are no channels of tags
-  uint64_t instrument_key;                // of random numbers
+  RangeSink::Tags tags;
+  uint64_t instrument_key;  // of random numbers
   int scrambles;
   // Paths of a row: of a pixel, or of a pulse where they leave the laser.
   uint64_t paths() const { return uint64_t{instrument.paths} * (laser_first ? field.pixels() : 1); }
@@ -48,6 +48,8 @@ class PulseRows {
   void run(Job& job, const RowRange& range, bool from_laser, PulseReport& report);
   void scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray, const FirstScattering::Strata& strata,
                     RangeSink::Lane& lane);
+  void start(Job& job, const SensorRay& ray, const SampleStream& stream, uint32_t sample, const RangeSink::Lane& lane,
+             PulseReport& report);
   SensorRay from_receiver(Job& job, const PulseAtWork& pulse, size_t pixel, const std::array<double, 4>& u,
                           RangeSink::Lane& lane) const;
   SensorRay from_laser(const PulseAtWork& pulse, const SampleStream& stream, uint32_t sample,

@@ -15,17 +15,23 @@ class RangeSink final : public Sink<SpectralThroughputs> {
     RangeBins* rows = nullptr;  // its row, or those of all pixels where paths leave the laser
     int scramble = 0;
     double active = 0, passive = 0;  // photons of radiance 1 in them; 0: not asked for
+    double arrival = 0;              // m, before the path begins
+    uint32_t orders = 0;             // before it begins
+    bool first_elsewhere = false;    // what matter scatters before any surface is brought by another path
     double once_at_surface = 1;      // times what surfaces scatter once
   };
   // end: the index of the lidar's light in the environment; receiver: null where paths leave it. orders: at most.
   // without_first: what matter scatters once comes from elsewhere (first_scattering.h).
   RangeSink(size_t width, uint16_t end, const ReceiverEnd* receiver, uint32_t orders, bool without_first)
       : lanes_(width), end_(end), receiver_(receiver), orders_(orders), without_first_(without_first) {}
-  // channel_of: of the object that a path has met first (FirstMeeting::object); empty: there are no such channels.
-  // kernel: whose sink this is.
-  void tell_apart(std::vector<size_t> channel_of_object, PathTracing& kernel) {
-    channel_of_object_ = std::move(channel_of_object), kernel_ = &kernel;
-  }
+  // Channels by what a path has met first, 0 = none: of the object, else of its material.
+  struct Tags {
+    std::vector<size_t> of_object, of_material;
+    bool any() const { return !of_object.empty(); }
+  };
+  // Whose sink this is; asked for what paths have met.
+  void serve(PathTracing& kernel) { kernel_ = &kernel; }
+  void tell_apart(const Tags& tags) { tags_ = &tags; }  // kept
   void begin(uint32_t p, const Lane& lane) { lanes_[p] = lane; }
   uint64_t failures() const { return failures_; }
   // Light of a lane that has been found elsewhere: photons = lane.active times light. spectrum: of the end.
@@ -40,7 +46,7 @@ class RangeSink final : public Sink<SpectralThroughputs> {
   const ReceiverEnd* receiver_;
   uint32_t orders_;
   bool without_first_;
-  std::vector<size_t> channel_of_object_;
+  const Tags* tags_ = nullptr;  // null: there are no such channels
   PathTracing* kernel_ = nullptr;
   uint64_t failures_ = 0;
 };

@@ -21,9 +21,12 @@ uint64_t key_of(const std::string& name) {
   return h;
 }
 
-void check(const LidarInstrument& instrument, const TraceOptions& options) {
+void check(const LidarInstrument& instrument) {
   if (const std::string wrong = fault_of(instrument); !wrong.empty())
     throw Error("lidar '" + instrument.name + "': " + wrong);
+}
+
+void check(const TraceOptions& options) {
   if (options.scrambles < 2 || options.scrambles > 64)
     throw Error(strf("%u scrambles for standard errors", options.scrambles), "2 to 64");
   suite::check(options.method);
@@ -36,22 +39,28 @@ bool laser_first(const LidarInstrument& i, const LaserBeam& beam, const Receiver
   return beam.solid_angle() < field.solid_angle();
 }
 
-// Channels of tags, by the tag of what is met first, else by its material.
-std::vector<size_t> channels_of(const LidarInstrument& instrument, const Tracer& tracer) {
-  std::vector<size_t> channels;
-  if (instrument.tags.empty()) return channels;
+// Channels of tags of placements and of materials. Error: neither has the name.
+RangeSink::Tags tags_of(const LidarInstrument& instrument, const Tracer& tracer) {
+  RangeSink::Tags tags;
+  if (instrument.tags.empty()) return tags;
   const Scene& scene = tracer.scene();
   const auto channel = [&](const std::string& name) {
     const auto at = std::find(instrument.tags.begin(), instrument.tags.end(), name);
     return at == instrument.tags.end() ? size_t{0} : static_cast<size_t>(at - instrument.tags.begin()) + 2;
   };
-  channels.assign(tracer.object_count(), 0);
+  std::vector<std::string> names = scene.tags;
+  for (const Material& m : scene.materials) names.push_back(m.id), tags.of_material.push_back(channel(m.id));
+  for (const std::string& tag : instrument.tags)
+    if (std::find(names.begin(), names.end(), tag) == names.end())
+      throw Error("lidar '" + instrument.name + "': the scene has no tag and no material '" + tag + "'",
+                  name_hint(tag, names));
+  tags.of_object.assign(tracer.object_count(), 0);
   tracer.each(
       "surfaces with channels of a lidar", [](const TracedObject&) { return true; },
       [&](uint32_t o, const TracedObject& object) {
-        if (object.tag != kNone) channels[o] = channel(scene.tags[object.tag]);
+        if (object.tag != kNone) tags.of_object[o] = channel(scene.tags[object.tag]);
       });
-  return channels;
+  return tags;
 }
 
 // From the emission of the first pulse to the end of the last one's gate; pulses without a beam do not count.
@@ -88,7 +97,7 @@ class Tracing {
               LaserBeam(instrument.laser.beam),
               ReceiverField(instrument.receiver),
               false,
-              channels_of(instrument, tracer_),
+              tags_of(instrument, tracer_),
               key_of(instrument.name),
               static_cast<int>(std::min(options.scrambles, instrument.paths))} {
     plan_.laser_first = laser_first(instrument, plan_.beam, plan_.field);
@@ -229,6 +238,7 @@ std::vector<ResponseBlock> Tracing::trace(uint64_t first, uint64_t last, PulseRe
 }  // namespace
 
 ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument) {
+  check(instrument);
   ResponseHead head;
   head.bin = instrument.gate.bin;
   head.bins = static_cast<uint32_t>(
@@ -247,7 +257,8 @@ ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument
 
 PulseReport trace_pulses(const std::shared_ptr<const Scene>& scene, const SourceSpecs& passive,
                          const LidarInstrument& instrument, const TraceOptions& options, ResponseSink& sink) {
-  check(instrument, options);
+  check(instrument);
+  check(options);
   SUITE_CHECK(instrument.pulses);
   const uint64_t all = instrument.pulses->size(), first = std::min(options.first, all),
                  last = first + std::min(options.count, all - first);

@@ -33,7 +33,8 @@ struct TraceOptions {
   uint32_t scrambles = 16;  // independent parts of a row's paths, 2..64, for standard errors; at most one a path
   // Of the kernel; nodes and scatterings follow from LidarInstrument::orders, the seed from above.
   PipelineOptions method = {};
-  Progress* progress = nullptr;  // counts pulses; null = none
+  bool forced_scattering = true;  // in thin matter (first_scattering.h; off for comparisons)
+  Progress* progress = nullptr;   // counts pulses; null = none
 };
 
 // What has been traced, for logs.
@@ -49,7 +50,7 @@ struct PulseReport {
   bool hot_spot = false;     // leaves that fill space were passed once by light scattered once (first_scattering.h)
 };
 
-// What the blocks of an instrument belong to. scene: for its origin.
+// What the blocks of an instrument belong to. scene: for its origin. Error: an instrument with a fault (fault_of).
 ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument);
 
 // Traces pulses and hands their blocks to the sink in the order of the train. A stop signal ends it between blocks by

@@ -250,6 +250,17 @@ TEST(LidarErrors, FaultsAreTold) {
   lidar.laser.beam.kind = BeamProfile::Kind::image;
   EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("beam's image"), std::string::npos);
   lidar.laser.beam.kind = BeamProfile::Kind::gaussian;
+  lidar.receiver.columns = 4;
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("an array needs rows"), std::string::npos);
+  lidar.receiver.rows = 4, lidar.receiver.pitch = 1e-5, lidar.receiver.focal = 0.1, lidar.receiver.columns = 4000000;
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("at most 1e7"), std::string::npos);
+  lidar.receiver.columns = 0;
+  lidar.laser.stokes = {1, 1, 0, 0};
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("polarisation is not traced"), std::string::npos);
+  lidar.laser.stokes = {1, 0, 0, 0};
+  lidar.tags = {"roof"};
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("no tag and no material 'roof'"), std::string::npos);
+  lidar.tags.clear();
   TraceOptions options;
   options.scrambles = 1;
   EXPECT_NE(message_of([&] { receive(plate(0.3), lidar, {}, options); }).find("2 to 64"), std::string::npos);

@@ -77,6 +77,24 @@ TEST(LidarMedia, TheBedUnderFlatWaterReturnsLateAndWeak) {
   }
 }
 
+// A beam that is 20 degrees off the zenith comes from the bed 91.81587 ns after the surface's place, 2 D n / (c cos w).
+TEST(LidarMedia, ABeamOffTheZenithIsLateByItsWayInWater) {
+  const double H = 400, D = 10, a = 20 * kDegree;
+  DownLidar lidar(H, 16);
+  lidar.laser.offset = lidar.receiver.offset = {quat_about({0, 1, 0}, a), {}};
+  lidar.laser.beam.full_angle_1_e2 = 2e-5;
+  lidar.receiver.field_of_view = 1e-3;
+  lidar.gate_of(H / std::cos(a) - 1, H / std::cos(a) + 30, 1e-10);
+  const Received got = receive(bed(D, Curve::constant(1.33), 0.05), lidar);
+  double sum = 0, first = 0;
+  for (const ResponseBlock& b : got.blocks)
+    for (size_t e = 0; e < b.entries(); ++e) {
+      sum += b.value[2 * e];
+      first += b.value[2 * e] * (lidar.gate.start + (b.bin[e] - 0.5) * lidar.gate.bin);
+    }
+  EXPECT_NEAR(first / sum - 2 * H / std::cos(a) / kSpeedOfLight, 91.81587e-9, 5e-12);
+}
+
 // n = 1.33 + 0.02 / wavelength^2 at 0.532 um: n_g = n - wavelength dn/dwavelength = 1.33 + 3 x 0.02 / wavelength^2.
 TEST(LidarMedia, TimeGoesByTheGroupIndex) {
   const double H = 100, D = 10, um = 0.532;
@@ -172,6 +190,29 @@ TEST(LidarMedia, AHalfSpaceReturnsItsReflectance) {
     const auto single = got.total(kSingle);
     EXPECT_NEAR(single.photons / 64 / unit, c.albedo / (8 * kPi), 4 * single.error() / 64 / unit + 1e-5 * c.albedo)
         << c.albedo;
+  }
+}
+
+// Paths that are scattered for certain in thin matter bring the same light of further orders, with less noise.
+TEST(LidarMedia, ForcedScatteringIsTheSameWithLessNoise) {
+  auto scene = slab_scene(medium(Curve::constant(0.002), Curve::constant(0.02), hg(0.2)), 5);  // depth 0.1
+  scene->materials.push_back(material("soil", lambert(0.3)));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 2, translation({0, 0, -0.5}));
+  check_scene(*scene, "mist over soil");
+  DownLidar lidar(10, 128);
+  lidar.laser.beam.full_angle_1_e2 = 0.6;
+  lidar.receiver.field_of_view = 0.8;
+  lidar.gate_of(4, 16, 2e-9);
+  lidar.paths = 128, lidar.orders = 5;
+  for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+    lidar.start_from = from;
+    TraceOptions free;
+    free.forced_scattering = false;
+    const auto forced = receive(scene, lidar).total(kMultiple),
+               chance = receive(scene, lidar, {}, free).total(kMultiple);
+    EXPECT_NEAR(forced.photons, chance.photons, 4 * std::hypot(forced.error(), chance.error()));
+    EXPECT_LT(chance.error(), 0.05 * chance.photons);
+    EXPECT_LT(forced.error(), 0.8 * chance.error());
   }
 }
 

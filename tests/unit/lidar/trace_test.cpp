@@ -210,8 +210,8 @@ TEST(Trace, PassiveLightStandsInBinZero) {
 TEST(Trace, TagsHaveChannels) {
   for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
     auto scene = scene_of(
-        {quad(100, 0, 0), mesh_of({{0, -50, 2}, {50, -50, 2}, {50, 50, 2}, {0, 50, 2}}, {0, 1, 2, 0, 2, 3}, 0)},
-        {material("plate", lambert(0.3))});
+        {quad(100, 0, 0), mesh_of({{0, -50, 2}, {50, -50, 2}, {50, 50, 2}, {0, 50, 2}}, {0, 1, 2, 0, 2, 3}, 1)},
+        {material("plate", lambert(0.3)), material("tiles", lambert(0.3))});
     scene->tags = {"street", "roof"};
     scene->groups[0].placements[0].tag = 0, scene->groups[0].placements[1].tag = 1;
     DownLidar lidar(1000, 8);
@@ -219,11 +219,15 @@ TEST(Trace, TagsHaveChannels) {
     lidar.receiver.field_of_view = 4e-3;
     lidar.gate_of(990, 1010, 1e-9);
     lidar.start_from = from;
-    lidar.tags = {"roof"};
+    lidar.tags = {"roof", "tiles", "plate"};
     const Received got = receive(scene, lidar);
-    ASSERT_EQ(got.head.channels, (std::vector<std::string>{"single", "multiple", "tag:roof"}));
+    ASSERT_EQ(got.head.channels,
+              (std::vector<std::string>{"single", "multiple", "tag:roof", "tag:tiles", "tag:plate"}));
     const auto roof = got.total(2), all = got.total();
     EXPECT_NEAR(roof.photons, all.photons / 2, 4 * std::hypot(roof.error(), all.error()) + 0.01 * all.photons);
+    EXPECT_EQ(got.total(3).photons, 0) << "a tag of a placement goes before its material";
+    EXPECT_NEAR(got.total(4).photons, all.photons - roof.photons, 1e-9 * all.photons)
+        << "the street has a tag that nobody asks for, its material has a channel";
     // And it is what comes back first.
     const double between = 2 * 999 / kSpeedOfLight;
     const auto early = got.sum([&](uint32_t b) { return lidar.gate.start + (b - 0.5) * lidar.gate.bin < between; }, 2);
