@@ -127,12 +127,14 @@ LidarJobs::LidarJobs(const Cli& cli, const RenderOptions& options, Simulation& s
 LidarJobs::~LidarJobs() = default;
 
 void LidarJobs::check(const std::shared_ptr<const Scene>& scene) {
+  std::vector<std::string> names = scene->tags;
+  for (const Material& m : scene->materials) names.push_back(m.id);
   for (const auto& job : jobs_) {
     const LidarInstrument& i = job->of.instrument;
     for (const std::string& tag : i.tags)
-      if (std::ranges::find(scene->tags, tag) == scene->tags.end())
-        throw Error(job->of.where, "laser radar '" + i.name + "': the scene has no tag '" + tag + "'",
-                    name_hint(tag, scene->tags));
+      if (std::ranges::find(names, tag) == names.end())
+        throw Error(job->of.where, "laser radar '" + i.name + "': the scene has no tag and no material '" + tag + "'",
+                    name_hint(tag, names));
     const TimeSpan span = job->train.span();
     check_motion(*scene, span.begin, span.end + i.gate.stop, job->of.where);
     job->head = response_head(*scene, i);
