@@ -127,12 +127,14 @@ LidarJobs::LidarJobs(const Cli& cli, const RenderOptions& options, Simulation& s
 LidarJobs::~LidarJobs() = default;
 
 void LidarJobs::check(const std::shared_ptr<const Scene>& scene) {
+  std::vector<std::string> names = scene->tags;
+  for (const Material& m : scene->materials) names.push_back(m.id);
   for (const auto& job : jobs_) {
     const LidarInstrument& i = job->of.instrument;
     for (const std::string& tag : i.tags)
-      if (std::ranges::find(scene->tags, tag) == scene->tags.end())
-        throw Error(job->of.where, "laser radar '" + i.name + "': the scene has no tag '" + tag + "'",
-                    name_hint(tag, scene->tags));
+      if (std::ranges::find(names, tag) == names.end())
+        throw Error(job->of.where, "laser radar '" + i.name + "': the scene has no tag and no material '" + tag + "'",
+                    name_hint(tag, names));
     const TimeSpan span = job->train.span();
     check_motion(*scene, span.begin, span.end + i.gate.stop, job->of.where);
     job->head = response_head(*scene, i);
@@ -225,7 +227,8 @@ Json LidarJobs::log() const {
     j.set("pulses", r.pulses), j.set("shots_without_a_beam", r.dark);
     j.set("rows", r.rows), j.set("paths", r.paths), j.set("rejected_contributions", r.failures);
     j.set("photons", r.photons), j.set("photons_outside_of_the_gate", r.outside), j.set("truncated", r.truncated);
-    j.set("paths_begin_at", r.laser_first ? "laser" : "receiver"), j.set("passive_light", r.passive);
+    j.set("paths_begin_at", r.laser_first ? "laser" : "receiver"), j.set("passive_light", r.passive),
+        j.set("leaves_passed_once", r.hot_spot);
     j.set("range_bins", uint64_t{job->head.bins}), j.set("bin_ns", job->head.bin * 1e9);
     j.set("group_index", job->head.group_index), j.set("detected", job->detect != nullptr);
     j.set("seconds", job->seconds);

@@ -17,8 +17,8 @@ class LidarJobs {
   LidarJobs(const Cli& cli, const RenderOptions& options, Simulation& simulation, bool several_ranks);
   ~LidarJobs();
   bool any() const { return !jobs_.empty(); }
-  // Refuses what the scene has not: tags; and what it cannot: motions that end too early. Tells nothing and writes
-  // nothing.
+  // Refuses what the scene has not: tags and materials; and what it cannot: motions that end too early. Tells nothing
+  // and writes nothing.
   void check(const std::shared_ptr<const Scene>& scene);
   // A line for each: pulses, paths, bins, bytes.
   void forecast() const;

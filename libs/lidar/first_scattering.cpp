@@ -54,8 +54,10 @@ double FirstScattering::air(Vec3 from, Dir direction, double length) {
 
 // What walk_ stands in.
 void FirstScattering::add_stretch(double begin, double end) {
-  Stretch s{begin,        end, 0, 0, 0, depth_, leaf_depth_, 0, fall_depth_, contents_.size(), 0, legs_.size() - 1,
-            walk_.layer()};
+  Stretch s{};
+  s.begin = begin, s.end = end;
+  s.depth = depth_, s.leaf_depth = leaf_depth_, s.fall_depth = fall_depth_, s.media_depth = media_depth_;
+  s.contents = contents_.size(), s.leg = legs_.size() - 1, s.layer = walk_.layer();
   for (const Constituent& c : walk_.contents()) {
     const BakedMedium& m = kit_.optics.media()[c.medium];
     const double scattering = c.density * double{m.scattering[0]},
@@ -64,6 +66,7 @@ void FirstScattering::add_stretch(double begin, double end) {
     if (leaves_[c.medium]) s.leaves += all;
     if (scattering > 0) contents_.push_back(c), ++s.count;
   }
+  s.media = s.rate;
   const AirVertices* const places = legs_.back().airless ? nullptr : places_in(kit_.environment);
   if (places && s.layer != kNone)
     s.rate += double{places->medium(s.layer).scattering[0]};
@@ -72,6 +75,7 @@ void FirstScattering::add_stretch(double begin, double end) {
   s.fall = std::max(s.extinction, s.rate);
   const double length = std::min(end - begin, kEndless);
   depth_ += s.extinction * length, leaf_depth_ += s.leaves * length, fall_depth_ += s.fall * length;
+  media_depth_ += s.media * length;
   if (s.extinction > 0 || s.rate > 0) stretches_.push_back(s);
 }
 
@@ -89,7 +93,7 @@ void FirstScattering::walk_leg(const Ray& ray, double begin, double length) {
 // The ray up to the first surface that is no boundary.
 void FirstScattering::walk(const Ray& first) {
   stretches_.clear(), legs_.clear(), contents_.clear();
-  depth_ = leaf_depth_ = fall_depth_ = 0;
+  depth_ = leaf_depth_ = fall_depth_ = media_depth_ = 0;
   MediumStack stack;
   if (bodies_.any()) stack = bodies_.around(first.origin, first.time, statistics_);
   const uint32_t ambient = kit_.surface.tracer().scene().ambient;
@@ -168,6 +172,39 @@ auto FirstScattering::span(const Vec3& origin, Vec3 end_place, const Gate& gate)
   return s;
 }
 
+double FirstScattering::air_up_to(const Ray& ray, const Leg& leg, double t) {
+  return leg.airless ? leg.air : leg.air * air(ray.origin + ray.direction * leg.begin, ray.direction, t - leg.begin);
+}
+
+auto FirstScattering::go_on(const Ray& ray, const std::array<double, 4>& u) -> std::optional<Onward> {
+  constexpr double kDense = 1;  // depth at which free flights are scattered often enough
+  const Stretch* const last = stretch_at(reach_);
+  if (!last) return std::nullopt;
+  const double all = last->media_depth + last->media * std::clamp(reach_ - last->begin, 0.0, last->end - last->begin);
+  if (!(all > 0 && media_depth_ < kDense)) return std::nullopt;
+  const double chance = -std::expm1(-all), depth = -std::log1p(-u[0] * chance);
+  const auto after = std::upper_bound(stretches_.begin(), stretches_.end(), depth,
+                                      [](double x, const Stretch& s) { return x < s.media_depth; });
+  if (after == stretches_.begin()) return std::nullopt;
+  const Stretch& s = *(after - 1);
+  if (!(s.media > 0)) return std::nullopt;
+  const double t = s.begin + (depth - s.media_depth) / s.media;
+  double choice = u[3] * s.media;
+  const BakedMedium* by = nullptr;
+  for (size_t c = s.contents; c < s.contents + s.count; ++c) {
+    by = &kit_.optics.media()[contents_[c].medium];
+    if ((choice -= contents_[c].density * double{by->scattering[0]}) < 0) break;
+  }
+  const Leg& leg = legs_[s.leg];
+  const double absorbed = s.depth - s.media_depth + (s.extinction - s.media) * (t - s.begin);
+  Onward on;
+  on.ray = {ray.origin + ray.direction * t, scattered_direction(-ray.direction, by->phase->sample(u[1], 0), u[2]),
+            ray.time, ray.draw};
+  on.weight = chance * std::exp(-absorbed) * air_up_to(ray, leg, t);
+  on.arrival = leg.arrival + leg.delay * (t - leg.begin);
+  return on;
+}
+
 // t: m along the ray.
 void FirstScattering::place(const Ray& ray, Vec3 end_place, const Gate& gate, double t, const Span& span,
                             std::vector<Scattered>& to) {
@@ -185,9 +222,7 @@ void FirstScattering::place(const Ray& ray, Vec3 end_place, const Gate& gate, do
   const double there_and_back = same ? 2 * (leg.arrival + leg.delay * (t - leg.begin)) : arrival;
   if (!(there_and_back >= gate.start && there_and_back < gate.stop)) return;
   const double depth = s.depth + s.extinction * (t - s.begin), leaves = s.leaf_depth + s.leaves * (t - s.begin);
-  double left = leg.air;
-  if (!leg.airless) left *= air(ray.origin + ray.direction * leg.begin, ray.direction, t - leg.begin);
-  left *= std::exp(-depth);
+  const double left = air_up_to(ray, leg, t) * std::exp(-depth);
   double light = phase(s, scattering_cosine(-ray.direction, seen->direction)) * seen->scale * left / density;
   if (!(light > 0)) return;
   if (same) {
@@ -227,6 +262,7 @@ void FirstScattering::trace(const Ray& ray, Vec3 end_place, const Gate& gate, co
                             std::vector<Scattered>& to) {
   to.clear();
   walk(ray);
+  reach_ = (gate.stop + length(end_place - ray.origin)) / 2;
   surface_share_ =
       leaf_depth_ > 0 && length(end_place - ray.origin) <= kSameWay * surface_at_ ? std::exp(leaf_depth_) : 1;
   Span s = span(ray.origin, end_place, gate);

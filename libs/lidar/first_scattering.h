@@ -13,7 +13,9 @@
 // Based on: A. Kuusk, "The hot spot effect in plant canopy reflectance", in "Photon-vegetation interactions", 1991
 // (correlation of both ways); stratification: M. Pharr et al., "Physically based rendering", 4th ed., section 8.2.
 #pragma once
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lidar/line_kit.h"
@@ -47,18 +49,28 @@ class FirstScattering {
     double start, stop;
   };
   void trace(const Ray& ray, Vec3 end_place, const Gate& gate, const Strata& strata, std::vector<Scattered>& to);
+  // Where a path that is scattered for certain begins its second flight, for all further orders: the place is drawn by
+  // scattering alone on the last ray, up to where light may still arrive within the gate, the direction by the phase
+  // function. u: in [0, 1), the place, the direction (two), by whom. Nothing where matter is so dense that paths are
+  // scattered anyway, or nothing scatters.
+  struct Onward {
+    Ray ray;
+    double weight, arrival;  // arrival: m up to there
+  };
+  std::optional<Onward> go_on(const Ray& ray, const std::array<double, 4>& u);
   // Of the last ray: by what the light of the first surface, scattered once there, is more for leaves on the way.
   double surface_share() const { return surface_share_; }
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
   struct Stretch {
-    double begin, end;         // m along the ray
-    double extinction, rate;   // 1/m; rate: of scattering
-    double leaves;             // extinction by leaves, 1/m
-    double depth, leaf_depth;  // up to begin
-    double fall, fall_depth;   // extinction that places follow, and its depth up to begin
-    size_t contents, count;    // in contents_
+    double begin, end;          // m along the ray
+    double extinction, rate;    // 1/m; rate: of scattering
+    double leaves;              // extinction by leaves, 1/m
+    double depth, leaf_depth;   // up to begin
+    double fall, fall_depth;    // extinction that places follow, and its depth up to begin
+    double media, media_depth;  // scattering by media alone
+    size_t contents, count;     // in contents_
     size_t leg, layer;
   };
   struct Leg {                          // between two boundaries
@@ -88,6 +100,7 @@ class FirstScattering {
   double fall_to(double t) const;
   double at_fall(double depth) const;
   const Stretch* stretch_at(double t) const;
+  double air_up_to(const Ray& ray, const Leg& leg, double t);
   void place(const Ray& ray, Vec3 end_place, const Gate& gate, double t, const Span& span, std::vector<Scattered>& to);
   void answer(std::vector<Scattered>& to);
 
@@ -107,7 +120,8 @@ class FirstScattering {
   std::vector<Constituent> contents_;
   std::vector<Waiting> waiting_;
   SightRays rays_;
-  double depth_ = 0, leaf_depth_ = 0, fall_depth_ = 0, surface_share_ = 1, surface_at_ = 0;
+  double depth_ = 0, leaf_depth_ = 0, fall_depth_ = 0, media_depth_ = 0, reach_ = 0, surface_share_ = 1,
+         surface_at_ = 0;
   TraceStatistics statistics_;
 };
 

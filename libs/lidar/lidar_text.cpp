@@ -10,7 +10,7 @@ namespace suite {
 
 namespace {
 
-constexpr double kMostPulses = 1e12;
+constexpr double kMostPulses = 1e9;  // of all tasks and channels
 
 // What a user may mean by it differs by a factor of up to four.
 void refuse_divergence(const Params& map) {
@@ -183,7 +183,7 @@ PulseClock read_clock(const Params& sensor, const Params& laser, const SensorCon
       const double span = context.time(p.at("stop")) - t.begin;
       if (!(span >= 0)) throw p.at("stop").error("the task stops before it starts");
       if (!(span * c.rate < kMostPulses))
-        throw p.at("stop").error(strf("%.3g pulses in one task", span * c.rate), "at most 1e12");
+        throw p.at("stop").error(strf("%.3g pulses in one task", span * c.rate), "at most 1e9");
       // Up to but without the stop, so that tasks can follow each other.
       t.shots = std::max<uint64_t>(1, static_cast<uint64_t>(std::ceil(span * c.rate - 1e-6)));
     }
@@ -195,6 +195,13 @@ PulseClock read_clock(const Params& sensor, const Params& laser, const SensorCon
   }
   if (c.tasks.empty()) throw list.error("a laser radar has at least one task", "tasks: [{start: 0, stop: 1}]");
   return c;
+}
+
+void check_number(const TrainSpec& s, const Params& tasks) {
+  double shots = 0;
+  for (const PulseClock::Task& t : s.clock.tasks) shots += static_cast<double>(t.shots);
+  const double all = shots * s.clock.burst * static_cast<double>(s.deflector->channels());
+  if (all > kMostPulses) throw tasks.error(strf("%.4g pulses of all tasks and channels", all), "at most 1e9");
 }
 
 // Channels of one shot are over before the next one.
@@ -280,6 +287,7 @@ LidarInstrument read_lidar(const Params& p, const SensorContext& context) {
   const auto scanner = p.find("scanner");
   s.deflector = scanner ? make_deflector(*scanner) : fixed_deflector_row().make(p);
   if (scanner) check_channels(s, *scanner);
+  check_number(s, p.at("tasks"));
   s.scan_lag = receiver.boolean("scan_lag", false);
   if (laser.has("pulse_energy_j") && laser.has("average_power_w"))
     throw laser.at("average_power_w").error("'pulse_energy_j' and 'average_power_w' exclude each other");

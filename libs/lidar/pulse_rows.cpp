@@ -22,6 +22,7 @@ struct PulseRows::Job {
   SpectralThroughputs throughputs;
   std::unique_ptr<PathTracing> kernel;
   bool passive, active;
+  bool scatters;         // media scatter its paths: PathRecord::scattered_first is known
   uint32_t waiting = 0;  // started paths
 
   Job(const LineKit& kit, Environment lit, const PipelineOptions& method, uint16_t end_, const ReceiverEnd* receiver,
@@ -34,7 +35,8 @@ struct PulseRows::Job {
         throughputs(kWave, kit.optics.state().size(), 1),
         kernel(make_kernel(choose_kernel(context), context, kWave, throughputs, sink)),
         passive(passive_),
-        active(active_) {}
+        active(active_),
+        scatters(choose_kernel(context).space == KernelChoice::Space::field) {}
 
   void finish(const Tracer& tracer, PulseReport& report) {
     TraceStatistics statistics;
@@ -88,7 +90,8 @@ auto PulseRows::make_job(std::shared_ptr<const Light> end, const ReceiverEnd* re
   const bool tags = plan_.tags.any();
   auto job = std::make_unique<Job>(kit_, std::move(lit), method, active ? index : uint16_t{0xfffd}, receiver,
                                    plan_.instrument.orders, once_ != nullptr, tags, passive, active);
-  if (tags) job->sink.tell_apart(plan_.tags, *job->kernel);
+  job->sink.serve(*job->kernel);
+  if (tags) job->sink.tell_apart(plan_.tags);
   return job;
 }
 
@@ -128,6 +131,15 @@ void PulseRows::scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray,
   lane.once_at_surface = once_->surface_share();
 }
 
+void PulseRows::start(Job& job, const SensorRay& ray, const SampleStream& stream, uint32_t sample,
+                      const RangeSink::Lane& lane, PulseReport& report) {
+  const uint32_t p = job.waiting++;
+  job.sink.begin(p, lane);
+  job.throughputs.begin(p, 1, nullptr);
+  job.kernel->start(p, ray, stream, sample);
+  if (job.waiting == kWave) job.finish(plan_.tracer, report);
+}
+
 // Scramble s of n paths has those that are left over by one each from the first on.
 void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseReport& report) {
   const size_t pixels = range.last_pixel - range.first_pixel;
@@ -155,11 +167,17 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
             scatter_once(job, pulse, ray.ray,
                          {sample, count, std::clamp(plan_.head.bins / count, 4u, 128u), hash_of(key, s, 0x6f6e6365)},
                          lane);
-          const uint32_t p = job.waiting++;
-          job.sink.begin(p, lane);
-          job.throughputs.begin(p, 1, nullptr);
-          job.kernel->start(p, ray, stream, sample);
-          if (job.waiting == kWave) job.finish(plan_.tracer, report);
+          std::optional<FirstScattering::Onward> on;
+          const SampleStream onward(key, static_cast<uint32_t>(scrambles + s));
+          if (once_ && lane.active > 0 && plan_.instrument.orders > 1 && job.scatters &&
+              plan_.options.forced_scattering)
+            on = once_->go_on(ray.ray, onward.draw(sample, dimensions::kSensor.first));
+          lane.first_elsewhere = on.has_value();
+          start(job, ray, stream, sample, lane, report);
+          if (!on) continue;
+          lane.active *= on->weight, lane.passive = 0;
+          lane.arrival = on->arrival, lane.orders = 1, lane.first_elsewhere = false;
+          start(job, {on->ray, 1}, onward, sample, lane, report);
         }
       }
     }

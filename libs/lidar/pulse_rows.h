@@ -48,6 +48,8 @@ class PulseRows {
   void run(Job& job, const RowRange& range, bool from_laser, PulseReport& report);
   void scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray, const FirstScattering::Strata& strata,
                     RangeSink::Lane& lane);
+  void start(Job& job, const SensorRay& ray, const SampleStream& stream, uint32_t sample, const RangeSink::Lane& lane,
+             PulseReport& report);
   SensorRay from_receiver(Job& job, const PulseAtWork& pulse, size_t pixel, const std::array<double, 4>& u,
                           RangeSink::Lane& lane) const;
   SensorRay from_laser(const PulseAtWork& pulse, const SampleStream& stream, uint32_t sample,

@@ -9,7 +9,7 @@ constexpr double kMost = 1e30;
 }
 
 size_t RangeSink::tag(uint32_t p) const {
-  if (!tags_ || !kernel_->record(p).met) return 0;
+  if (!tags_ || lanes_[p].orders > 0 || !kernel_->record(p).met) return 0;
   const FirstMeeting& first = kernel_->first(p);
   if (const size_t channel = first.object < tags_->of_object.size() ? tags_->of_object[first.object] : 0)
     return channel;
@@ -32,12 +32,13 @@ void RangeSink::add(std::span<const Contribution> stage, SpectralThroughputs& th
     const Lane& lane = lanes_[c.path];
     const bool active = c.light == end_;
     const double photons = active ? lane.active : lane.passive;
-    const uint32_t order = c.order - c.smooth;
+    const uint32_t order = lane.orders + c.order - c.smooth;
     if (!c.arrived() || photons == 0 || (active && order > orders_)) continue;
     double L = double{throughputs.throughput(c.path)[0]} * c.factor.scale * c.scale * photons;
     if (c.factor.spectrum) L *= double{c.factor.spectrum[0]};
     if (c.radiance) L *= double{c.radiance[0]};
-    if (active && c.order == 1) {
+    if (active && lane.first_elsewhere && kernel_->record(c.path).scattered_first) continue;
+    if (active && lane.orders + c.order == 1) {
       if (!(c.events & by_medium))
         L *= lane.once_at_surface;
       else if (without_first_)
@@ -50,7 +51,7 @@ void RangeSink::add(std::span<const Contribution> stage, SpectralThroughputs& th
     const bool multiple = order > 1;
     RangeBins& row = lane.rows[active && receiver_ ? receiver_->pixel_of(c.radiance) : 0];
     if (active)
-      row.deposit(lane.scramble, c.arrival / kSpeedOfLight, L, multiple, tag(c.path));
+      row.deposit(lane.scramble, (lane.arrival + c.arrival) / kSpeedOfLight, L, multiple, tag(c.path));
     else
       row.passive(lane.scramble, L, multiple, tag(c.path));
   }

@@ -15,6 +15,9 @@ class RangeSink final : public Sink<SpectralThroughputs> {
     RangeBins* rows = nullptr;  // its row, or those of all pixels where paths leave the laser
     int scramble = 0;
     double active = 0, passive = 0;  // photons of radiance 1 in them; 0: not asked for
+    double arrival = 0;              // m, before the path begins
+    uint32_t orders = 0;             // before it begins
+    bool first_elsewhere = false;    // what matter scatters before any surface is brought by another path
     double once_at_surface = 1;      // times what surfaces scatter once
   };
   // end: the index of the lidar's light in the environment; receiver: null where paths leave it. orders: at most.
@@ -26,8 +29,9 @@ class RangeSink final : public Sink<SpectralThroughputs> {
     std::vector<size_t> of_object, of_material;
     bool any() const { return !of_object.empty(); }
   };
-  // tags: kept. kernel: whose sink this is.
-  void tell_apart(const Tags& tags, PathTracing& kernel) { tags_ = &tags, kernel_ = &kernel; }
+  // Whose sink this is; asked for what paths have met.
+  void serve(PathTracing& kernel) { kernel_ = &kernel; }
+  void tell_apart(const Tags& tags) { tags_ = &tags; }  // kept
   void begin(uint32_t p, const Lane& lane) { lanes_[p] = lane; }
   uint64_t failures() const { return failures_; }
   // Light of a lane that has been found elsewhere: photons = lane.active times light. spectrum: of the end.

@@ -33,7 +33,8 @@ struct TraceOptions {
   uint32_t scrambles = 16;  // independent parts of a row's paths, 2..64, for standard errors; at most one a path
   // Of the kernel; nodes and scatterings follow from LidarInstrument::orders, the seed from above.
   PipelineOptions method = {};
-  Progress* progress = nullptr;  // counts pulses; null = none
+  bool forced_scattering = true;  // in thin matter (first_scattering.h; off for comparisons)
+  Progress* progress = nullptr;   // counts pulses; null = none
 };
 
 // What has been traced, for logs.

@@ -7,6 +7,7 @@ PROGRAMS = ("scene-prep", "dirsig-render", "sqt-fit", "sqt-inspect")
 LISTS = (("reference/truth.md", "Truth", "What else a pixel can hold, by the `truth` of a sensor.", "dirsig-render", "--list-truth"),
          ("reference/channels.md", "Channels", "Parts of the light as further bands, by the `channels` of a sensor.", "dirsig-render", "--list-channels"),
          ("reference/sensor_kinds.md", "Kinds of sensors", "What `kind` of a sensor may be; keys: [sensors](sensors.md).", "dirsig-render", "--list-sensors"),
+         ("reference/deflector_kinds.md", "Kinds of scanners", "What `kind` of a scanner of a laser radar may be; keys: [laser radars](lidar.md).", "dirsig-render", "--list-deflectors"),
          ("reference/detector_kinds.md", "Kinds of detectors", "What `kind` of a detector of laser pulses may be; keys: [detection](detection.md).", "dirsig-render", "--list-detectors"),
          ("reference/image_detector_kinds.md", "Kinds of image detectors", "What `kind` of the detector of an array may be; keys: [sensors](sensors.md).", "dirsig-render", "--list-image-detectors"),
          ("reference/sources.md", "Sources of light", "Kinds of suns, skies and lamps of a simulation text.", "dirsig-render", "--list-sources"),

@@ -150,7 +150,7 @@ TEST_F(Lidar, Refused) {
   for (const std::string option : {"--target-error 1%", "--view v.html", "--stop plan"})
     refused("sim.yaml -o out " + option, 2, "is of images");
   refused("sim.yaml -o out --paths 4,8", 2, "--paths of laser radars is one number");
-  refused("sim.yaml -o out --set 'sensors.als.tags=[rooof]'", 1, "the scene has no tag 'rooof'");
+  refused("sim.yaml -o out --set 'sensors.als.tags=[rooof]'", 1, "the scene has no tag and no material 'rooof'");
   refused("sim.yaml -o out --set sensors.als.beam=3", 1, "unknown key 'beam'");
   refused("sim.yaml -o out --set 'sensors.als.las={scales: 3}'", 1, "unknown key 'scales'");
   refused("sim.yaml -o out --set sensors.als.detectors=null --set 'sensors.als.output=[las]'", 1,

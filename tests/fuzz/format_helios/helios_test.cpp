@@ -1,6 +1,7 @@
 // Damaged scenes of HELIOS++: a text that is YAML, or one Error.
 #include "formats/helios/helios.h"
 #include "base/params.h"
+#include "formats/helios/survey.h"
 #include "formats/helios/xyz.h"
 #include "scene/issues.h"
 #include "support/fuzz.h"
@@ -38,6 +39,28 @@ const std::vector<std::string> kWords{
 
 TEST(FuzzHelios, Scene) {
   test::fuzz(test::bytes_of(test::helios_scene()), read_and_check, 1, test::kMutations, kWords);
+}
+
+TEST(FuzzHelios, Survey) {
+  const std::string text =
+      R"(<document><scannerSettings id="b" pulseFreq_hz="1000" scanFreq_hz="20"/>
+<scanner id="s" optics="risley" pulseLength_ns="4" rotorFreq1_Hz="-77" rotorFreq2_Hz="121" angle1_deg="-29" angle2_deg="18" refrIndex1="1.5" refrIndex2="1.5">
+<beamOrigin z="0.2"><rot axis="y" angle_deg="10"/></beamOrigin><channels><channel id="a"><incidentBeam x="0" y="1" z="0"/></channel></channels></scanner>
+<platform id="p" type="linearpath"><scannerMount z="0.7"><rot axis="x" angle_deg="-90"/></scannerMount></platform>
+<survey scene="x.xml#s" platform="#p" scanner="#s"><leg><platformSettings x="0" y="5" z="400" movePerSec_m="50"/><scannerSettings template="b" headRotateStop_deg="9"/></leg>
+<leg><platformSettings x="20" y="45" z="400"/></leg></survey></document>)";
+  test::fuzz(
+      test::bytes_of(text),
+      [](std::span<const std::byte> bytes) {
+        const HeliosSurvey made =
+            parse_helios_survey({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "fuzz.xml",
+                                {[](const std::string& name) -> HeliosSurveyFiles::Named {
+                                   throw Error(Where{name, 0, 0, {}, -1}, "is not there");
+                                 },
+                                 [](const std::string& scene) { return scene + ".h5"; }});
+        Params::parse_made(made.text.yaml, "fuzz.xml", made.text.origins);
+      },
+      1, test::kMutations, kWords);
 }
 
 TEST(FuzzHelios, Points) {

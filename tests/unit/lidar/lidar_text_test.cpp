@@ -113,6 +113,8 @@ TEST(LidarText, Refused) {
   refused({"tasks=[{start: 0, stop: 1}, {start: 0.5, stop: 2}]"}, "before the last one ends");
   refused({"tasks=[{start: 2, stop: 1}]"}, "stops before it starts");
   refused({"tasks=[{start: 0, stop: 1e9}]"}, "pulses in one task");
+  refused({"scanner={kind: flash, columns: 4096, rows: 4096, pitch_um: 10, focal_length_mm: 100}"},
+          "of all tasks and channels");
   refused({"tasks=[]"}, "at least one task");
   refused({"paths=1"}, "outside");
   refused({"start_from=camera"}, "camera");

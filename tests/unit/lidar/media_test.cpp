@@ -193,6 +193,29 @@ TEST(LidarMedia, AHalfSpaceReturnsItsReflectance) {
   }
 }
 
+// Paths that are scattered for certain in thin matter bring the same light of further orders, with less noise.
+TEST(LidarMedia, ForcedScatteringIsTheSameWithLessNoise) {
+  auto scene = slab_scene(medium(Curve::constant(0.002), Curve::constant(0.02), hg(0.2)), 5);  // depth 0.1
+  scene->materials.push_back(material("soil", lambert(0.3)));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 2, translation({0, 0, -0.5}));
+  check_scene(*scene, "mist over soil");
+  DownLidar lidar(10, 128);
+  lidar.laser.beam.full_angle_1_e2 = 0.6;
+  lidar.receiver.field_of_view = 0.8;
+  lidar.gate_of(4, 16, 2e-9);
+  lidar.paths = 128, lidar.orders = 5;
+  for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+    lidar.start_from = from;
+    TraceOptions free;
+    free.forced_scattering = false;
+    const auto forced = receive(scene, lidar).total(kMultiple),
+               chance = receive(scene, lidar, {}, free).total(kMultiple);
+    EXPECT_NEAR(forced.photons, chance.photons, 4 * std::hypot(forced.error(), chance.error()));
+    EXPECT_LT(chance.error(), 0.05 * chance.photons);
+    EXPECT_LT(forced.error(), 0.8 * chance.error());
+  }
+}
+
 // A sphere with a Lambert wall, seen from its middle by a cone in every direction: of an impulse that a point of the
 // wall sends, energy per 0.5 m of path that arrives at the wall (n-fold convolutions of the chords' density l / 2, to
 // 2e-5).
