@@ -41,9 +41,11 @@ void PulsesAtWork::add(PulseAtWork pulse) {
 }
 
 const PulseAtWork* PulsesAtWork::of(double time) const {
-  if (last_ < pulses_.size() && pulses_[last_].time == time) return &pulses_[last_];
-  for (size_t i = 0; i < pulses_.size(); ++i)
+  // Paths are asked for in the order of their pulses: it is the last one, or the next.
+  for (size_t k = 0, i = last_ < pulses_.size() ? last_ : 0; k < pulses_.size(); ++k, ++i) {
+    if (i == pulses_.size()) i = 0;
     if (pulses_[i].time == time) return &pulses_[last_ = i];
+  }
   return nullptr;
 }
 
