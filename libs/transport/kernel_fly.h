@@ -338,8 +338,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p, boo
     if (!met->spectrum) {  // its shape changes with direction
       memory = dense(p);
       std::fill(memory.begin(), memory.end(), 0.0f);
-      path.points_apart && path.order() == 0 ? light.light->add_without_points(path.direction, path.time, 1, memory)
-                                             : light.light->add(path.direction, path.time, 1, memory);
+      path.points_apart&& path.order() == 0 ? light.light->add_without_points(path.direction, path.time, 1, memory)
+                                            : light.light->add(path.direction, path.time, 1, memory);
     }
     Contribution& c = contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);
