@@ -64,6 +64,8 @@ constexpr uint32_t roulette(uint32_t event) { return 2 + 16 * (event % (kStride 
 // Whether the event asks a light, and whether it tries a side flight.
 constexpr uint32_t roulette_of_light(uint32_t event) { return roulette(event) + 1; }
 constexpr uint32_t roulette_of_side(uint32_t event) { return roulette(event) + 2; }
+// Three of the light that a warm surface is asked for, where its emission is polarised.
+constexpr uint32_t of_emission(uint32_t event, uint32_t i) { return roulette(event) + 8 + i; }
 static_assert(roulette(0) != kKnot && roulette(1) - roulette(0) == 16 && roulette(kStride / 16 - 1) < kStride);
 
 inline std::array<double, 4> hashed(const SampleStream& stream, uint32_t sample, Hashed kind, uint32_t more,

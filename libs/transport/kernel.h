@@ -285,6 +285,7 @@ class PathKernel final : public PathTracing {
   static constexpr bool kStokes = requires { typename Throughputs::Polarised; };
   const PolarisedEvent* polarise(const NodeAt& node, Dir in, const Continuation* dirac = nullptr);
   const PolarisedEvent* polarise_aside(const Side& side);
+  const PolarisedEvent* polarise_emission(uint32_t p);
   // kernel_go_on.h: continuations.
   void go_on();
   SUITE_INLINE bool go_on(size_t i);

@@ -392,8 +392,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::emit(uint32_t p) {
     c.order -= 1;  // not scattered by what emits
     c.factor = emission.emissivity;
     c.radiance = emission.radiance;
-    if constexpr (kStokes) c.unknown = surfaces_.emission_unknown(p);
+    if constexpr (kStokes) c.polarised = polarise_emission(p);
     contribute();
+    if constexpr (kStokes) hand_over();
   }
 }
 

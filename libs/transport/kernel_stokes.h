@@ -27,6 +27,22 @@ const PolarisedEvent* PathKernel<Surfaces, Space, Throughputs, Estimator>::polar
   return nullptr;
 }
 
+// Of what a warm surface sends out.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+const PolarisedEvent* PathKernel<Surfaces, Space, Throughputs, Estimator>::polarise_emission(uint32_t p) {
+  if constexpr (kStokes) {
+    const Path& path = paths_[p];
+    double u[3];
+    for (uint32_t i = 0; i < 3; ++i)
+      u[i] = path.stream.hashed(path.sample, dimensions::of_emission(path.order() - 1, i));
+    matrices_.resize(bins_);
+    const auto of = surfaces_.emission_mueller(p, -path.direction, {u[0], u[1]}, u[2], path.knot, matrices_);
+    polarised_ = {{matrices_.data(), of.grey ? 1 : bins_}, static_cast<float>(of.unknown)};
+    return &polarised_;
+  }
+  return nullptr;
+}
+
 // Of a side flight: what the node makes of the light from there times what the place there makes of its light.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 const PolarisedEvent* PathKernel<Surfaces, Space, Throughputs, Estimator>::polarise_aside(const Side& side) {

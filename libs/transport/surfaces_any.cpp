@@ -161,6 +161,42 @@ bool AnySurfaces::sample_way(uint32_t p, Dir out, int mirror, bool reflects, int
   return true;
 }
 
+// In an isothermal box all light is (B, 0, 0, 0): what a surface sends out and what it scatters add up to that.
+ScatterModel::Polarised AnySurfaces::emission_mueller(uint32_t p, Dir out, Vec2 u, double lobe_u, int knot,
+                                                      std::span<Mueller> m) const {
+  const Interaction& at = *at_[p];
+  const ScatterModel& model = *at.baked->model;
+  const Dir to = at.frame.to_local(out);
+  std::fill(m.begin(), m.end(), Mueller::depolariser());
+  if (model.diffuse()) return {true, 0};
+  const auto drawn = model.sample(to, u, lobe_u, knot);
+  if (!drawn) return {true, 0};
+  thread_local std::vector<float> w, W;
+  thread_local std::vector<Mueller> scattered;
+  w.resize(m.size()), W.resize(m.size()), scattered.resize(m.size());
+  float density[kMaxKnots];
+  ScatterModel::Polarised of;
+  if (drawn->delta) {
+    model.delta_weight(to, drawn->lobe, knot, w);
+    model.delta_probability(to, drawn->lobe, knot, {density, knots_});
+    of = model.delta_mueller(to, drawn->lobe, knot, scattered);
+  } else {
+    model.eval(to, drawn->in, w);
+    model.pdf(to, drawn->in, {density, knots_});
+    of = model.mueller(to, drawn->in, scattered);
+  }
+  if (!(density[knot] > 0)) return {true, 0};
+  model.total(to, W);
+  const Dir in = at.frame.to_world(drawn->in);
+  for (size_t b = 0; b < m.size(); ++b) {
+    const double emissivity = 1 - double{W[b]};
+    if (!(emissivity > 1e-6)) continue;
+    const Mueller one = to_world(scattered[of.grey ? 0 : b], at.frame, out, in);
+    for (int j = 1; j < 4; ++j) m[b](j, 0) = -one(j, 0) * w[b] / (density[knot] * emissivity);
+  }
+  return {false, of.unknown};
+}
+
 // Thermal emission: (1 - W) B(T), Kirchhoff's law for this side and direction.
 AnySurfaces::Emission AnySurfaces::emission(uint32_t p, Dir out, std::span<float> dense) const {
   const Interaction& at = *at_[p];

@@ -77,8 +77,10 @@ class AnySurfaces {
   };
   bool warm(uint32_t p) const { return at_[p]->baked && !at_[p]->baked->blackbody.empty(); }
   Emission emission(uint32_t p, Dir out, std::span<float> dense) const;
-  // Share of it of which it is not known whether it is polarised: all but that of diffuse surfaces.
-  float emission_unknown(uint32_t p) const { return at_[p]->baked->model->diffuse() ? 0 : 1; }
+  // Its polarisation, in the first columns: Kirchhoff's law for every component, 1 - W_11, -W_21, -W_31, -W_41 over
+  // 1 - W_11, where the columns of W are estimated by light from one direction that is drawn at a knot.
+  ScatterModel::Polarised emission_mueller(uint32_t p, Dir out, Vec2 u, double lobe_u, int knot,
+                                           std::span<Mueller> m) const;
 
  private:
   bool take_dirac(uint32_t p, Dir to, const ScatterModel::Sample& drawn, int knot, std::span<float> dense,
