@@ -45,6 +45,7 @@ void check_lidar_usage(const Cli& cli, const Simulation& sim) {
       throw UsageError(std::string(option) +
                        " does not go with laser radars: take them out of the text, or leave it out");
   if (!sim.sensors.empty()) return;
+  if (sim.heat) throw UsageError("the simulation has `heat`, which images need, and laser radars only");
   for (const char* option :
        {"--target-error", "--target-floor", "--target-bands", "--stop", "--method", "--cache-memory", "--memory",
         "--heat", "--heat-operator", "--heat-only", "--view", "--view-size", "--air"})

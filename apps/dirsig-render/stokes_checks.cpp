@@ -10,6 +10,10 @@ namespace suite {
 
 void check_stokes(const Simulation& sim, const Sensor& sensor) {
   if (!ChannelPlan(sensor.channels()).of_stokes()) return;
+  if (const auto names = sensor.channels(); std::find(names.begin(), names.end(), "depolarised") == names.end())
+    throw Error(
+        "sensor '" + sensor.name() + "' sees polarisation, and nothing would say what part of its light is known",
+        "add the channel `depolarised`");
   const SourceSpecs& sources = sim.sources;
   if (sources.has_air() && !(sources.air && sources.air->scattering == AirScattering::traced))
     throw Error("sensor '" + sensor.name() + "' sees polarisation, and the light of this air is known without it",

@@ -7,8 +7,8 @@ std::string fault_of(const LidarInstrument& i) {
   if (!(r.aperture > 0)) return "the aperture must be above 0";
   if (!(r.obscuration >= 0 && r.obscuration < 1)) return "the obscuration must be from 0 to below 1";
   if (!(r.throughput > 0 && r.throughput <= 1)) return "the throughput must be above 0 and at most 1";
-  if (r.columns == 0 && !(r.field_of_view >= 0 && r.field_of_view <= 2))
-    return "the field of view must be from 0 to 2 rad";
+  if (r.columns == 0 && !(r.field_of_view > 0 && r.field_of_view <= 2))
+    return "the field of view must be above 0 and at most 2 rad";
   if (r.columns > 0 && !(r.rows > 0 && r.pitch > 0 && r.focal > 0))
     return "an array needs rows, and a pitch and a focal length above 0";
   if (uint64_t{r.columns} * r.rows > 10000000)

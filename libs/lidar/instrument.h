@@ -43,7 +43,7 @@ struct LidarReceiver {
   double filter_um = 1e-3;  // full width of the filter about the laser's line, for passive light
   Pose offset;              // from the receiver's frame to the body's
   // One detector behind a field stop: the full angle. With an array (columns > 0): pixels of `pitch` behind `focal`.
-  double field_of_view = 1e-3;  // rad, 0..2
+  double field_of_view = 1e-3;  // rad, above 0, at most 2
   uint32_t columns = 0, rows = 0;
   double pitch = 0, focal = 0;  // m
 };

@@ -107,7 +107,7 @@ LidarReceiver read_receiver(const Params& p) {
   r.filter_um = p.number_in("filter_nm", 1e-6, 1e4, "nm", 1) * 1e-3;
   const auto array = p.find("array");
   if (!array) {
-    r.field_of_view = p.number_in("field_of_view_mrad", 0, 2000, "mrad") * 1e-3;
+    r.field_of_view = p.number_in("field_of_view_mrad", 1e-6, 2000, "mrad") * 1e-3;
     return r;
   }
   if (p.has("field_of_view_mrad"))

@@ -1,5 +1,6 @@
 #include "lidar/pulse_at_work.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "spectral/planck.h"
@@ -29,7 +30,8 @@ std::optional<PulseAtWork> begin_pulse(const LidarInstrument& instrument, uint64
     const double way = p.range + length(p.laser.translation + axis * p.range - p.receiver.translation);
     found = p;
     const double before = round_trip;
-    round_trip = way / kSpeedOfLight;
+    // Motions are known to the end of the gate.
+    round_trip = std::min(way / kSpeedOfLight, pulse->start + gate.stop - gate.start);
     if (round > 0 && std::fabs(round_trip - before) <= kSettled) break;
   }
   return found;

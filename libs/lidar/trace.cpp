@@ -32,6 +32,9 @@ void check(const TraceOptions& options) {
   suite::check(options.method);
   if (options.method.method != Method::standard)
     throw Error("pulses are traced by the standard estimator", "leave the method as it is");
+  if (!options.method.explicit_sources)
+    throw Error("without light sampling no pulse is found: laser and receiver are points",
+                "leave out `light_sampling: off` of `techniques`");
 }
 
 bool laser_first(const LidarInstrument& i, const LaserBeam& beam, const ReceiverField& field) {

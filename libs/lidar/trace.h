@@ -13,7 +13,8 @@
 // Arrival is the optical path with the group index of the matter on it, where that is known, else its phase index; the
 // air counts as vacuum, in arrivals and in ResponseHead::group_index alike.
 // Assumes: reciprocal surfaces; an aperture and a laser that are points but for the beam's waist; spectra alone, no
-// polarisation; the scene stands still from the emission to the reception of a pulse.
+// polarisation; the scene stands still from the emission to the reception of a pulse; passive light is even over the
+// filter: it is known at the laser's line alone.
 #pragma once
 #include <functional>
 #include <memory>

@@ -41,7 +41,9 @@ struct InFlight {
   double bytes() const {
     const auto n = static_cast<double>(work.capture.problems()), values = static_cast<double>(work.values);
     const Accumulators::Shape row{1, work.values, scrambles_for(work.goals.all.max_paths), work.truth_slots, false};
-    return n * (static_cast<double>(row.bytes()) + 24 * values + 200);
+    // Covariances of Stokes vectors and what follows from them.
+    const double stokes = primed->pipeline.of_stokes() ? 104 * static_cast<double>(primed->projection().bands()) : 0;
+    return n * (static_cast<double>(row.bytes()) + 24 * values + 200 + stokes);
   }
   const Item& item;
   const std::shared_ptr<const Primed> primed;

@@ -63,6 +63,7 @@ void Judge::add(size_t sensor, const CaptureWork& work, size_t reference, const 
 }
 
 void Judge::add_to_saved(double radiance, double error, uint32_t paths) {
+  if (!std::isfinite(error)) return;  // of a single group of samples
   paths_by_noise_ += paths;
   // Variances fall as one over the number of paths, at the slowest.
   const double share = radiance > 0 ? error / (kUsualTarget * radiance) : 1;
@@ -78,7 +79,7 @@ std::string Judge::target_text() const {
 }
 
 std::string Judge::saved_text() const {
-  if (!(noise_target_ > 0)) return {};
+  if (!(noise_target_ > 0) || !(paths_by_noise_ > 0)) return {};
   return strf(
       "; by the detectors' noise %.3g paths were run, where a standard error of %g %% of the radiance would "
       "take %.3g (%.3g times as many)",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/interrupt.h"
 #include "light/far_points.h"
 #include "sensor/point_images.h"
 
@@ -15,18 +16,39 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 
 class PointsInView {
  public:
-  PointsInView(const Primed& primed, const SeesPoints& sensor, const Capture& capture, CaptureResult& result)
-      : primed_(primed), sensor_(sensor), capture_(capture), result_(result), projection_(primed.projection()) {}
+  PointsInView(const Primed& primed, const SeesPoints& sensor, const Polarimetry* polarimetry, const Capture& capture,
+               CaptureResult& result)
+      : primed_(primed),
+        sensor_(sensor),
+        polarimetry_(polarimetry),
+        capture_(capture),
+        result_(result),
+        projection_(primed.projection()) {}
 
   void add(const FarPoints& all, uint16_t light, std::vector<SeenPoint>& seen) {
     Contribution direct;
     direct.light = light;
-    shares_.assign(result_.channels, 1.0);
-    for (size_t c = 1; c < result_.channels; ++c) shares_[c] = static_cast<double>(primed_.channels.share(c, direct));
-    for (const FarPoint& point : all.points) add(all, point, seen);
+    shares_.assign(result_.channels, behind(0));
+    for (size_t c = 1; c < result_.channels; ++c) {
+      const int component = primed_.channels.component(c);
+      shares_[c] =
+          component > 0 ? behind(component) : behind(0) * static_cast<double>(primed_.channels.share(c, direct));
+    }
+    for (const FarPoint& point : all.points) {
+      constexpr double kGrace = 0.5;  // s
+      stop_point(kGrace);
+      add(all, point, seen);
+    }
   }
 
  private:
+  // Component of the Stokes vector that the sensor makes of unpolarised light of intensity 1.
+  double behind(int component) const {
+    const Polarimetry* const how = polarimetry_;
+    if (how && how->analyser) return (*how->analyser)(static_cast<size_t>(component), 0);
+    return component == 0 ? 1 : 0;
+  }
+
   void add(const FarPoints& all, const FarPoint& point, std::vector<SeenPoint>& seen) {
     std::vector<double> above;
     SeenPoint found{point.number, point.v, 0, 0, std::vector<double>(result_.bands, 0.0)};
@@ -89,6 +111,7 @@ class PointsInView {
 
   const Primed& primed_;
   const SeesPoints& sensor_;
+  const Polarimetry* const polarimetry_;  // null: the sensor tells no polarisation
   const Capture& capture_;
   CaptureResult& result_;
   const BandProjection& projection_;
@@ -102,10 +125,10 @@ class PointsInView {
 
 void add_points(const Primed& primed, Sensor& sensor, const Capture& capture, CaptureResult& result) {
   auto* const sees = dynamic_cast<SeesPoints*>(&sensor);
-  if (!sees || !sees->sees_points(capture)) return;
+  if (!sees || !sees->sees_points(capture) || !primed.pipeline.leaves_points()) return;
   std::vector<SeenPoint> seen;
   bool any = false;
-  PointsInView view(primed, *sees, capture, result);
+  PointsInView view(primed, *sees, sensor.polarimetry(), capture, result);
   const auto& lights = primed.kit.environment->lights;
   for (size_t i = 0; i < lights.size(); ++i)
     if (const FarPoints* points = lights[i]->points()) any = true, view.add(*points, static_cast<uint16_t>(i), seen);

@@ -119,6 +119,8 @@ enum class StokesFrame : uint8_t {
 struct Polarimetry {
   StokesFrame frame = StokesFrame::meridian;
   Vec3 up = {};  // of `image`: what is up in the picture, along no ray
+  Vec3 axis =
+      {};  // of pictures that are no perspective or map: their middle, from which `up` is taken along great circles
   // What stands before the detector, as a matrix in that frame; the radiance is the intensity behind it.
   std::optional<Mueller> analyser;
 };

@@ -135,6 +135,13 @@ void BlockRun::start(uint32_t p) {
   kernel.start(p, ray, stream, number);
 }
 
+// What is up in the picture at a ray, not yet upright on it.
+static Vec3 upright(const Polarimetry& how, Dir ray) {
+  const double opposite = 1 + dot(how.axis, ray);
+  if (how.axis == Vec3{} || opposite < 1e-9) return how.up;
+  return how.up - (how.axis + ray) * (dot(how.up, ray) / opposite);
+}
+
 // From the meridian frame of the light that comes along a ray to what the sensor measures.
 Mueller BlockRun::sensor_matrix(const SensorRay& ray) const {
   const Polarimetry* const how = sensor_.polarimetry();
@@ -142,7 +149,7 @@ Mueller BlockRun::sensor_matrix(const SensorRay& ray) const {
   const Dir k = -ray.ray.direction;
   Mueller m = Mueller::identity();
   Vec3 first{};  // axis of the sensor's frame, to be made upright on k
-  if (how->frame == StokesFrame::image) first = how->up;
+  if (how->frame == StokesFrame::image) first = upright(*how, ray.ray.direction);
   if (how->frame == StokesFrame::scattering_plane) first = *sun_;
   first = first - k * dot(first, k);
   if (const double size = length(first); size > 1e-12) m = frame_rotation(meridian_frame(k), first / size);
@@ -216,9 +223,10 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   return true;
 }
 
-// 0, or where samples may have a sign what no number is below.
+// 0, or where samples may have a sign what no number is below: light behind analysers that warm matter sends, of which
+// one direction is drawn, and rounding at crossed polarizers.
 float BlockRun::lowest(size_t channel) const {
-  return pipeline_.is_signed() || pipeline_.channels_.is_signed(channel) ? -3e38f : 0;
+  return pipeline_.is_signed() || pipeline_.of_stokes() || pipeline_.channels_.is_signed(channel) ? -3e38f : 0;
 }
 // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
 bool BlockRun::good(std::span<const float> light, float lowest) {

@@ -102,12 +102,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   std::fill_n(path.throughput, knots(), 1.0);
   if (knots() > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));
   PathRecord& record = records_[p];
-  record.time = ray.ray.time;
-  record.end = PathEnd::absorbed;
+  record.time = ray.ray.time, record.end = PathEnd::absorbed;
   record.truncated = record.strayed = 0;
   record.scattered_first = record.met = false;
   record.received = ray.receiver != SensorRay::Receiver::none;
-  path.received = record.received, path.points_apart = ray.points_apart;
+  path.received = record.received, path.points_apart = ray.points_apart && !kGuides;
   space_.start(p, path);
   if constexpr (Space::kGoesBack) passed_[p].sum = 0, passed_[p].again = false;
   if (!record.received) return active_.push_back(p);

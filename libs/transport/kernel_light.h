@@ -211,8 +211,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   if (arrives && keep_first_ && q.light == environment_.sun && !node.event && is_first(node)) firsts_[p].sunlit = true;
   Contribution& c = contribution(p, q.light);
   c.events |= node.event ? by_medium : by_surface;
-  c.asked = true;
-  c.beam = q.beam;
+  c.asked = true, c.beam = q.beam;
   if (waters_.any()) {
     c.water = water_behind(node, q.direction);
     if (c.water == WaterSeen::mirrored && distance < std::numeric_limits<double>::infinity())

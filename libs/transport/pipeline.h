@@ -36,6 +36,8 @@ class Pipeline {
   bool is_signed() const { return choice_.space == KernelChoice::Space::lit_air; }
   // Whether paths carry polarisation.
   bool of_stokes() const { return channels_.of_stokes(); }
+  // Whether paths leave points to sensors that ask for it (SensorRay::points_apart): media weaken points along flights.
+  bool leaves_points() const { return choice_.space != KernelChoice::Space::field; }
   const Tracer& tracer() const { return surface_.tracer(); }
 
  private:

@@ -177,10 +177,11 @@ class NightSkyLight final : public LightSpec {
           "adjacency, without media, has it)");
     const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
     const bool points = spec_.catalogue && spec_.in_view && scale > 0;
-    if (points && traced)
+    if (points && (traced || now.media))
       said.push_back(
-          "night sky: under `scattering: traced` its stars are spread over cells of 3 degrees, in views as well");
-    if (points && !traced)
+          "night sky: under `scattering: traced`, or with media in the scene, its stars are spread over cells of 3 "
+          "degrees, in views as well");
+    if (points && !traced && !now.media)
       now.points =
           std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all)), scale));
     all.lights[own] = std::make_shared<const NightSkyLight>(spec_, std::move(now));

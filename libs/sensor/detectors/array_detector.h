@@ -18,6 +18,9 @@ struct DetectorSite {
   bool dead = false;
 };
 
+// Read-outs that light may be left over from.
+inline constexpr uint32_t kMostBefore = 16;
+
 // One read-out of the detectors of one band, row-major.
 struct ArrayLight {
   uint32_t columns = 0, rows = 0;
@@ -29,7 +32,7 @@ struct ArrayLight {
   double more = 0;                  // electrons, standard deviation of noise beside that of the detector
   bool lines = false;               // rows are moments of one line of detectors
   Vec2 pitch;                       // m
-  uint32_t before = 0;              // read-outs right before this one
+  uint32_t before = 0;              // read-outs right before this one, kMostBefore at most
   double period = 0;                // s from one of them to the next
   size_t size() const { return electrons.size(); }
   // Key of the noise of one detector in this read-out, or in the one `ago` before it.

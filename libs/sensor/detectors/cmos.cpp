@@ -32,6 +32,7 @@ class Cmos final : public ArrayDetector {
       double charge = poisson(collected(d_, c, light.electrons[i], light.exposure), random);
       const bool full = d_.full_well > 0 && charge > d_.full_well;
       if (full) charge = d_.full_well;
+      if (light.lines) charge += keys_.column_noise * normal(random);  // each row is a read-out
       charge += own_noise(light.sites[i], random) + of_row[i / light.columns] + of_column[i % light.columns];
       const Converted converted = convert(d_, charge);
       out.dn[i] = converted.counts;
@@ -55,7 +56,8 @@ class Cmos final : public ArrayDetector {
   }
   double column(const ArrayLight& light, uint32_t c) const {
     double sum = 0;
-    if (keys_.column_noise > 0) sum += keys_.column_noise * deviate(kColumn, hash_of(light.array, light.read_out, c));
+    if (keys_.column_noise > 0 && !light.lines)
+      sum += keys_.column_noise * deviate(kColumn, hash_of(light.array, light.read_out, c));
     if (keys_.column_offset > 0) sum += keys_.column_offset * deviate(kOffset, hash_of(light.array, c));
     return sum;
   }

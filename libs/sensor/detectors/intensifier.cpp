@@ -23,7 +23,6 @@ namespace suite {
 namespace {
 
 constexpr double kEvents = 10;                   // photoelectrons of a pixel that are followed one by one
-constexpr int kMostBefore = 16;                  // read-outs that light may be left over from
 constexpr double kLeast = 1e-4;                  // share of the light of one read-out that is followed into a later one
 constexpr double kLampKelvin = 2856;             // CIE illuminant A, that luminous sensitivities are told for
 constexpr double kWidest = 10;                   // pixels, standard deviation of a spot
@@ -83,7 +82,7 @@ class Intensifier final : public ArrayDetector {
   ArrayReading read(const ArrayLight& light) const override {
     const std::vector<double> landing = landed(light);
     std::vector<double> glow(light.size(), 0);  // mean electrons of the camera
-    const int before = tube_.decay > 0 ? static_cast<int>(std::min<uint32_t>(light.before, kMostBefore)) : 0;
+    const int before = tube_.decay > 0 ? static_cast<int>(std::min(light.before, kMostBefore)) : 0;
     for (int ago = before; ago >= 0; --ago)
       if (const double share = emitted(light, ago); share > kLeast) add_pulses(light, landing, ago, share, glow);
     ArrayReading out = empty_reading(light.size(), true, false);

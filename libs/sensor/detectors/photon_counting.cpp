@@ -2,6 +2,7 @@
 // charge, with read noise, is above it. Of n electrons a frame, P = 1 - exp(-n) for a threshold that all pass.
 // Based on: A. G. Basden, C. A. Haniff, C. D. Mackay, "Photon counting strategies with low-light-level CCDs", MNRAS
 // 345, 2003.
+#include "base/interrupt.h"
 #include "math/variates.h"
 #include "sensor/detectors/detectors.h"
 #include "sensor/detectors/register.h"
@@ -15,6 +16,8 @@ struct Threshold {
   uint32_t frames = 1;   // that share the exposure
 };
 
+constexpr double kGrace = 0.5;  // s, that a read-out may take to its end when a signal came
+
 class CountingCcd final : public ArrayDetector {
  public:
   CountingCcd(const DetectorSpec& spec, const RegisterKeys& keys, Threshold threshold)
@@ -22,6 +25,7 @@ class CountingCcd final : public ArrayDetector {
   ArrayReading read(const ArrayLight& light) const override {
     ArrayReading out = empty_reading(light.size(), false, true);
     for (size_t i = 0; i < light.size(); ++i) {
+      if (i % 1024 == 0) stop_point(kGrace);
       const Character c = character_of(d_, light.sites[i]);
       if (c.hot) out.counts[i] = threshold_.frames;
       if (c.dead || c.hot) continue;

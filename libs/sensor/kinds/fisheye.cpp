@@ -21,6 +21,7 @@ class Fisheye final : public SimpleSensor {
     position_ = {x, y, z};
     const auto look = p.find("look");
     up_ = !look || look->as_choice({"up", "down"}) == 0;
+    if (polarimetry_) polarimetry_->axis = {0, 0, up_ ? 1.0 : -1.0};
     reach_ = p.number_in("max_angle_deg", 1, 180, "degrees", 90) * kDegree;
     done();
   }

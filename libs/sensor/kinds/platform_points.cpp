@@ -101,17 +101,21 @@ void image_point(const PlatformSpec& spec, const Capture& capture, const std::fu
     if (!place) return std::nullopt;
     return Vec2{place->x / array.pitch.x, place->y / array.pitch.y};
   });
-  const auto count = static_cast<size_t>(steps.count);
-  if (count == 1 && !seen_at(steps.time(0))) return;
+  const bool rolling = array.readout.kind == Readout::Kind::rolling;
+  const double window = capture.window.end - capture.window.begin;
+  // Rows that are exposed one after the other see what stands still at times of their own.
+  const double exposures = rolling ? window / array.readout.integration : 1;
+  const size_t count = std::clamp(static_cast<size_t>(std::ceil(rolling ? 64 * exposures : 1)),
+                                  static_cast<size_t>(steps.count), size_t{65536});
+  const std::optional<Vec2> still = steps.count == 1 ? seen_at(steps.time(0)) : std::nullopt;
+  if (steps.count == 1 && !still) return;
   // 4096 to V = 2, 256 from V = 6.
   const double wanted = segment.psf ? std::clamp(4096 * brightness / 0.16, 256.0, 4096.0) : 1;
   Falls falls(segment.psf.get(), spec.states[capture.state].size(),
               std::max<size_t>(1, static_cast<size_t>(wanted) / count) * count);
-  const bool rolling = array.readout.kind == Readout::Kind::rolling;
-  const double window = capture.window.end - capture.window.begin;
   for (size_t step = 0; step < count; ++step) {
-    const double time = steps.time(static_cast<int>(step));
-    const auto place = seen_at(time);
+    const double time = capture.window.begin + (static_cast<double>(step) + 0.5) / static_cast<double>(count) * window;
+    const auto place = still ? still : seen_at(time);
     if (!place) continue;
     const double gathered = 1 / (solid_angle(lens, *place, array.pitch) * array.pitch.x * array.pitch.y);
     for (size_t i = step; i < falls.count(); i += count) {
@@ -122,7 +126,7 @@ void image_point(const PlatformSpec& spec, const Capture& capture, const std::fu
       if (rolling) {
         const double since = time - capture.window.begin - exposed(spec, capture, *problem).delay;
         if (!(since >= 0 && since < array.readout.integration)) continue;
-        exposing = window / array.readout.integration;
+        exposing = exposures;
       }
       share({*problem, exposing * gathered / static_cast<double>(falls.count()), falls.weights(offset), time,
              pose(time).point({0, 0, 0})});

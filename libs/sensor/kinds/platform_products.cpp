@@ -101,6 +101,7 @@ void set_before(const PlatformSpec& spec, const CaptureResult& result, ArrayLigh
   const double begin = captures[result.capture].window.begin;
   for (size_t c = result.capture; c-- > 0;) {
     if (parts[c].array != own.array || parts[c].segment != own.segment) continue;
+    if (light.before >= kMostBefore) break;
     if (light.before++ == 0) light.period = begin - captures[c].window.begin;
   }
 }

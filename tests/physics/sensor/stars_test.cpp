@@ -97,6 +97,26 @@ TEST(Stars, FrameCameraKeepsTheirEnergyAndPlace) {
   }
 }
 
+// Starlight is unpolarised: half of it passes a polarizer, as Q and U of the light behind say, and none shows without.
+TEST(Stars, PolarizersTakeHalf) {
+  const Dir star = sphere().without_air(kStar.place);
+  PlatformKit kit;
+  kit.render(ground(), stars_alone({kStar}), camera(star, 0, 0, "stokes: linear\nanalyser: {polarizer_deg: 30}\n"));
+  kit.render(ground(), stars_alone({kStar}), camera(star, 0, 0, "stokes: linear\n"));
+  EXPECT_NEAR(energy(kit.shots[0], 1e4) / above(kStar), 0.5, 1e-4);
+  EXPECT_NEAR(energy(kit.shots[1], 1e4) / above(kStar), 1, 1e-4);
+  const auto linear = [](const CaptureResult& r) {
+    double I = 0, Q = 0, U = 0;
+    for (size_t p = 0; p < r.problems(); ++p) {
+      const double* const S = &r.radiance[p * r.values_per_problem()];
+      I += S[0], Q += S[1], U += S[2];
+    }
+    return std::hypot(Q, U) / I;
+  };
+  EXPECT_NEAR(linear(kit.shots[0].result), 1, 1e-6);
+  EXPECT_NEAR(linear(kit.shots[1].result), 0, 1e-6);
+}
+
 // 20 degrees off the axis a pixel sees 0.83 of the solid angle: radiance is as much higher.
 TEST(Stars, WideAngles) {
   const Dir star = sphere().without_air(kStar.place);
@@ -170,7 +190,8 @@ TEST(Stars, AirDimsThem) {
 }
 
 // A lens with distortion and a Gaussian spot: energy by the pixels' solid angles, centre by the lens.
-TEST(Stars, PlatformsSpreadThem) {
+// A platform that stands and looks past the star by degrees.
+double energy_by_platform(double past, const std::string& readout) {
   const Dir star = sphere().without_air(kStar.place);
   const double azimuth = std::atan2(star.x, star.y) / kDegree, height = std::asin(star.z) / kDegree;
   PlatformKit kit;
@@ -178,12 +199,21 @@ TEST(Stars, PlatformsSpreadThem) {
   kit.render(ground(), stars_alone({kStar}),
              strf("kind: platform\nmotion: {kind: straight, position_m: [0, 0, 2], heading_deg: %.12g, speed_m_s: 0}\n"
                   "tasks: [{start: 0, stop: 0}]\ninstruments:\n  - name: i\n    rotate_deg: [%.12g, 0, 0]\n",
-                  azimuth, 90 + height - 0.2) +
+                  azimuth, 90 + height - past) +
                  "    focal_length_mm: 100\n    distortion: {k1: -0.5}\n    psf: {kind: gaussian, sigma_um: 12}\n"
-                 "    arrays:\n      - {name: a, columns: 200, rows: 200, pitch_um: 10, paths: 4, "
-                 "bands: [{name: v, center_um: 0.55, fwhm_um: 0.01, shape: rectangular}]}\n");
-  ASSERT_EQ(kit.shots.size(), 1u);
-  EXPECT_NEAR(energy(kit.shots[0], 1e4) / above(kStar), 1, 1e-4);
+                 "    arrays:\n      - {name: a, columns: 200, rows: 200, pitch_um: 10, paths: 4, " +
+                 readout + "bands: [{name: v, center_um: 0.55, fwhm_um: 0.01, shape: rectangular}]}\n");
+  EXPECT_EQ(kit.shots.size(), 1u);
+  return energy(kit.shots[0], 1e4) / above(kStar);
+}
+
+TEST(Stars, PlatformsSpreadThem) { EXPECT_NEAR(energy_by_platform(0.2, ""), 1, 1e-4); }
+
+// Rows are exposed one after the other, and each sees a star that stands still as long as the others: 50 um a row, 2 ms
+// of light, of a read-out of 12 ms.
+TEST(Stars, RowsOfARollingShutterSeeThemAlike) {
+  const std::string rolling = "readout: {kind: rolling, row_time_s: 50.0e-6}, integration_time_s: 2.0e-3, ";
+  for (const double past : {-0.5, 0.0, 0.5}) EXPECT_NEAR(energy_by_platform(past, rolling), 1, 0.02) << past << " deg";
 }
 
 }  // namespace

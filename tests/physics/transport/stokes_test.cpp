@@ -178,6 +178,30 @@ TEST(Stokes, WarmMetalIsPolarisedByItsOwnLight) {
     }
   }
 }
+// One direction is drawn of what a rough metal sends out, so single samples behind a polarizer may be negative. None is
+// rejected: crossed polarizers add up to all light.
+TEST(Stokes, CrossedPolarizersShareThermalLight) {
+  const ModelSpec rough{
+      "ggx", {{"roughness", 0.3}}, {{"n", Curve::constant(25.3)}, {"k", Curve::constant(89.8)}}, {}, nullptr};
+  const std::vector<Band> thermal{Band::rectangular("t", 10, 0.1)};
+  Material plate = material("plate", rough);
+  plate.temperature_k = 300;
+  const auto scene = scene_of({quad(30, 0, 0)}, {plate});
+  std::vector<StokesSeen> seen;
+  for (const double axis : {-1.0, 0.0, 1.0}) {  // none, along the first axis, across
+    Polarimetry how;
+    if (axis != 0) how.analyser = Mueller{{0.5, 0.5 * axis, 0, 0, 0.5 * axis, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}};
+    const auto run = render(
+        scene, {},
+        std::make_unique<StokesRays>(std::vector<Ray>{towards_origin(70 * kDegree, 0.7)}, 8192, how, thermal, 0.05));
+    EXPECT_EQ(run.report.statistics.failures, 0u);
+    seen.push_back(seen_of(run.result)[0]);
+  }
+  const double error = std::hypot(seen[0].error[0], seen[1].error[0], seen[2].error[0]);
+  EXPECT_NEAR(seen[0].S[0] + seen[2].S[0], seen[1].S[0], kSignificant * error);
+  EXPECT_LT(error, 0.03 * seen[1].S[0]);
+}
+
 // Two reflections by panes that do not lie in one plane, against the product of matrices from the
 // sensor to the light. The order matters.
 TEST(Stokes, MatricesMultiplyFromTheSensorToTheLight) {
