@@ -102,7 +102,7 @@ def bystander(world, rng):
 # --- lights ---
 def lights_of(world):
     texts = world.texts()[0]
-    keys = [k for k in ("sun", "moon", "sky") if k in world.sim]
+    keys = [k for k in ("sun", "moon", "sky", "night_sky") if k in world.sim]
     if world.sim.get("sky", {}).get("kind") == "clear":
         keys = [k for k in keys if k != "sky"]  # goes with the sun
     return keys + [f"lamp {i}" for i, lamp in enumerate(world.sim["lamps"]) if f'"{lamp.get("material", "")}"' in texts or "material" not in lamp]
@@ -111,7 +111,7 @@ def lights_of(world):
 def with_lights(world, keep):
     made = world.copy()
     clear = world.sim.get("sky", {}).get("kind") == "clear"
-    for key in ("sun", "moon", "sky"):
+    for key in ("sun", "moon", "sky", "night_sky"):
         if key in made.sim and key not in keep and not (key == "sky" and clear and "sun" in keep):
             del made.sim[key]
     made.sim["lamps"] = [lamp for i, lamp in enumerate(made.sim["lamps"]) if f"lamp {i}" in keep]
@@ -129,6 +129,8 @@ def brighter(world, factor):
     for key, what in (("sun", "irradiance"), ("moon", "irradiance"), ("sky", "radiance")):
         if what in made.sim.get(key, {}):
             made.sim[key][what] = times_number(made.sim[key][what], factor)
+    if "night_sky" in made.sim:
+        made.sim["night_sky"]["scale"] = {part: by * factor for part, by in made.sim["night_sky"]["scale"].items()}
     for lamp in made.sim["lamps"]:
         what = "radiance" if "radiance" in lamp else "intensity"
         lamp[what] = times_number(lamp[what], factor)

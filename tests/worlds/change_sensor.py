@@ -82,7 +82,7 @@ def swapped(world, rng):
             piece["maps"] = [m for m in piece.get("maps", []) if w.scene["maps"][m]["type"] != "temperature"]
             if not piece["maps"]:
                 del piece["maps"]
-        for key in ("sun", "moon", "sky"):
+        for key in ("sun", "moon", "sky", "night_sky"):
             w.sim.pop(key, None)
         keys = {k: w.sim["sensors"][0][k] for k in ("bands", "spectral_error", "truth") if k in w.sim["sensors"][0]}
         if not keys.get("bands"):

@@ -77,7 +77,7 @@ def candidates(world):
     for k in range(len(world.sim["sensors"])):
         if len(world.sim["sensors"]) > 1:
             ways.append((f"sensor {k}", drop(lambda w: w.sim["sensors"], k)))
-    for key in ("sun", "moon", "sky", "atmosphere"):
+    for key in ("sun", "moon", "sky", "night_sky", "atmosphere"):
         if key in world.sim and not (key == "sky" and world.facts["furnace"]):
             ways.append((key, drop(lambda w: w.sim, key)))
     for name, group in world.scene["groups"].items():

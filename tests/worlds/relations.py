@@ -167,7 +167,7 @@ RELATIONS = {r.name: r for r in (
     Relation("superposition", superposition, 3),
     Relation("substitution", same_as(rewrite.substitute), 4),
     Relation("switches", same_as(change.switches), 2),
-    Relation("time_shift", same_as(change.time_shift), 1),
+    Relation("time_shift", same_as(change.time_shift), 1, frozen("later")),
     Relation("channels", channels, 1, frozen("wants_camera")),
     Relation("sensors_agree", sensors_agree, 2, frozen("wants_camera")),
     Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "moved", "still_world", "no_room", "no_profile")),

@@ -329,7 +329,7 @@ NO_ROOM = {"without": ("room_sphere", "room_box", "periodic")}
 AMBIENT = ("layered_air", "profile_air", "profile_no_adjacency", "traced_air", "gases_air", "periodic")
 FLOORS = ("floor_none", "floor_plane", "floor_infinite", "floor_sinusoid", "floor_mesh")
 NO_POOL = FLOORS + ("room_sphere", "room_box")
-NOT_A_ROOM = FLOORS + ("pool", "in_water", "point_in_water", "sun", "sun_collimated", "moon", "sky", "sky_full", "sky_table", "sky_thermal", "clear_sky",
+NOT_A_ROOM = FLOORS + ("pool", "in_water", "point_in_water", "sun", "sun_collimated", "moon", "sky", "sky_full", "sky_table", "sky_thermal", "clear_sky", "night_sky",
                        "sky_furnace", "layered_air", "profile_air", "profile_no_adjacency", "traced_air", "gases_air")
 SMOOTH = {"without": ("reciprocal",)}   # a point's light by a smooth surface is found from one end alone
 SHADING = {"without": ("reciprocal",)}  # normals that are not the surface's are not reciprocal

@@ -66,6 +66,13 @@ def clear_sky(d):
     d.world.sim["sky"] = {"kind": "clear"}
 
 
+def night_sky(d):
+    """As bright as lamps; its stars spread, for sensors differ in which of them see stars as points."""
+    scale = d.u(1e5, 4e5)
+    d.world.sim["night_sky"] = {"time_utc": "2026-03-20T23:00:00Z", "place": {"latitude_deg": d.u(-70, 70), "longitude_deg": d.u(-170, 170)}, "resolve_stars": "none",
+                                "scale": {part: round(scale * d.u(0.2, 1)) for part in ("zodiacal", "airglow", "starlight", "galactic", "stars")}}
+
+
 def sky_furnace(d):
     d.world.sim["sky"] = {"radiance": d.blackbody_curve(), "full_sphere": True}
     if d.chance(0.5):  # an even table is asked for on purpose, at every place; without one the sky is met by chance alone
@@ -112,9 +119,10 @@ ROWS = [
     ("sky_table", "sky", sky_table, far(1, ONE_SKY[3:] + ("reciprocal",))),
     ("sky_thermal", "sky", sky_thermal, far(1.1, ONE_SKY[4:] + ("reciprocal",))),
     ("clear_sky", "sky", clear_sky, far(3.5, ONE_SKY[5:] + ("reciprocal", "layered_air", "thermal", "moved"))),
-    ("sky_furnace", "light_furnace", sky_furnace, {"without": ("sun", "sun_collimated", "moon", "sky", "sky_full", "sky_table", "sky_thermal", "clear_sky", "lamp_point",
+    ("sky_furnace", "light_furnace", sky_furnace, {"without": ("sun", "sun_collimated", "moon", "sky", "sky_full", "sky_table", "sky_thermal", "clear_sky", "night_sky", "lamp_point",
                                                               "lamp_spot", "lamp_distribution", "lamp_scheduled", "room_sphere", "room_box", "room_glows",
                                                               "profile_air", "profile_no_adjacency", "traced_air", "gases_air")}),
+    ("night_sky", "light", night_sky, far(1.3, ("reciprocal", "moved", "later"))),  # stands by date: is not turned, and moves as time goes on
     ("lamp_point", "light", lamp("point"), NOT_FURNACE), ("lamp_spot", "light", lamp("spot"), NOT_FURNACE),
     ("lamp_distribution", "light", lamp_distribution, NOT_FURNACE), ("lamp_scheduled", "light", lamp_scheduled, {"without": ("furnace", "still_world")}),
 ]
