@@ -33,9 +33,8 @@ class NumberText {
     at_ = stop;
     return x;
   }
-  // The next angle, ascending from 0 to 180 deg, as its cosine.
-  double cosine(const char* form) {
-    const double angle = next("an angle", form);
+  // Of the next angle, ascending from 0 to 180 deg. What stands behind it is read first: numbers may be missing.
+  double cosine(double angle) {
     if (!(angle > before_ && angle <= 180))
       throw Error(strf("phase function 'tabulated': the angle %g is not ascending from 0 to 180", angle));
     if (before_ < 0 && angle != 0) throw Error("phase function 'tabulated': the " + name_ + " starts above 0 deg");
@@ -85,8 +84,8 @@ class Tabulated final : public PhaseFunction {
     const char* const form = "angle_deg value, angle_deg value, ... from 0 to 180";
     NumberText numbers(text, "table");
     while (numbers.more()) {
-      cosine.push_back(numbers.cosine(form));
-      const double f = numbers.next("a value", form);
+      const double angle = numbers.next("an angle", form), f = numbers.next("a value", form);
+      cosine.push_back(numbers.cosine(angle));
       if (f < 0) throw Error(strf("phase function 'tabulated': the value at %g deg is negative", numbers.angle()));
       value.push_back(f);
     }
@@ -100,9 +99,10 @@ class Tabulated final : public PhaseFunction {
     constexpr double kLeast = -1e-3;  // of a coherency's eigenvalue, which printed digits may cost
     NumberText numbers(text, "matrix");
     while (numbers.more()) {
-      cosine_.push_back(numbers.cosine(form));
+      const double angle = numbers.next("an angle", form);
       PlaneBlocks b;
       for (double* x : {&b.b, &b.a2, &b.c, &b.d, &b.c2}) *x = numbers.next("an element", form);
+      cosine_.push_back(numbers.cosine(angle));
       if (least_coherency(b.matrix()) < kLeast)
         throw Error(strf("phase function 'tabulated': the matrix at %g deg is none of a scatterer", numbers.angle()),
                     "elements are over P11; where they are, a sign is wrong: nothing polarises more than all light");
