@@ -12,6 +12,8 @@ namespace suite {
 
 namespace {
 
+constexpr double kMostIntensity = 65535;
+
 struct LasWishes {
   double scale = 1e-3;
   LasPackets packets = LasPackets::none;
@@ -47,6 +49,8 @@ class LasOutput : public DetectOutput {
           ++cloud.placeless;
           continue;
         }
+        const double intensity = one.amplitude * wishes_.intensity;
+        cloud.cut += intensity > kMostIntensity, cloud.brightest = std::max(cloud.brightest, intensity);
         LasReturn out = return_of(p, pixel, one);
         out.place = map_.place(*at), out.scan_angle = angle;
         if (wave) {
@@ -69,6 +73,14 @@ class LasOutput : public DetectOutput {
       one.set("file", context_.spec.detectors[d]->name() + ".las");
       one.set("points", clouds_[d].writer->points());
       one.set("returns_without_place", clouds_[d].placeless);
+      one.set("intensities_cut", clouds_[d].cut);
+      if (clouds_[d].cut > 0)
+        note(strf(
+            "detector '%s': %llu of %llu intensities are beyond the 65535 of LAS and cut there (`amplitude` is not); "
+            "'las: {intensity_scale: %.2g}' keeps all of them",
+            context_.spec.detectors[d]->name().c_str(), static_cast<unsigned long long>(clouds_[d].cut),
+            static_cast<unsigned long long>(clouds_[d].writer->points()),
+            0.99 * wishes_.intensity * kMostIntensity / clouds_[d].brightest));
       list.push(std::move(one));
     }
     log.set("las", std::move(list));
@@ -77,8 +89,9 @@ class LasOutput : public DetectOutput {
  private:
   struct Cloud {
     std::unique_ptr<LasWriter> writer;
-    size_t samples = 0;  // of a packet, 0 = none
-    uint64_t placeless = 0;
+    size_t samples = 0;               // of a packet, 0 = none
+    uint64_t placeless = 0, cut = 0;  // returns; of those with a place, beyond what an intensity can be
+    double brightest = 0;
     std::optional<Vec3> last;  // place of the emission before
     Vec3 flight;
   };
@@ -133,7 +146,7 @@ class LasOutput : public DetectOutput {
 
   LasReturn return_of(const DetectedPulse& p, size_t pixel, const LidarReturn& r) const {
     LasReturn out;
-    out.intensity = static_cast<uint16_t>(std::clamp(std::round(r.amplitude * wishes_.intensity), 0.0, 65535.0));
+    out.intensity = static_cast<uint16_t>(std::clamp(std::round(r.amplitude * wishes_.intensity), 0.0, kMostIntensity));
     out.number = r.number, out.of = r.of;
     out.gps_time = time_of_pulse(p.head, p.pulse().time);
     if (!wishes_.extra) return out;
