@@ -175,7 +175,6 @@ PulseClock read_clock(const Params& sensor, const Params& laser, const SensorCon
   for (const Params& p : list.items()) {
     PulseClock::Task t;
     t.begin = context.time(p.at("start"));
-    p.name("name", "");
     if (const auto pulses = p.find("pulses")) {
       if (p.has("stop")) throw p.at("stop").error("'pulses' and 'stop' exclude each other");
       t.shots = static_cast<uint64_t>(pulses->as_integer(1, static_cast<long long>(kMostPulses)));
