@@ -11,8 +11,8 @@
 // would have sent (beyond). Nothing is left to be added where the scene is the even ground; where it is not, D is exact
 // in all orders, whatever ground E was made for, but for what is not asked: air whose scattering depth is less than
 // kLeastDepth from the ground up at every knot (D / cos of the view is then less than 1e-4 of the brightest thing in
-// the scene), and flights on which a path scatters less than 1e-5 of what it still carries (transport/kernel_back.h;
-// each less than 1e-5 of the same).
+// the scene), and flights on which a path scatters less than 1e-5 of what it still carries
+// (transport/techniques/air_residual.h; each less than 1e-5 of the same).
 #pragma once
 #include <array>
 #include <optional>

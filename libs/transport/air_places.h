@@ -1,5 +1,5 @@
-// Places in the air that paths go back to, to be scattered there (light/air_vertices.h, kernel_back.h): where they are
-// and what they do, for the spaces that have them.
+// Places in the air that paths go back to, to be scattered there (light/air_vertices.h, techniques/air_residual.h):
+// where they are and what they do, for the spaces that have them.
 #pragma once
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-// What chains of scatterings are drawn by (kernel_chain.h): how many there are, and where.
+// What chains of scatterings are drawn by (techniques/volume_chains.h): how many there are, and where.
 #pragma once
 #include <algorithm>
 #include <cmath>

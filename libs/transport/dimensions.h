@@ -29,7 +29,7 @@ inline constexpr Blocks kFlight{1024, kPerFlight* kFlights};
 inline constexpr Blocks kPlace{1120, kFlights};           // places in the air that paths go back to
 inline constexpr Blocks kGuided{1136, kNodes};            // guided continuations beside the first ones
 inline constexpr uint32_t kPerSide = 2;                   // whether and where to, and the flight with a light
-inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (kernel_side.h)
+inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (techniques/side_vertex.h)
 
 inline constexpr uint32_t kPerChain = 3;                      // of one to the sun and one to the sky
 inline constexpr Blocks kChain{1232, 2 * kPerChain* kNodes};  // chains of scatterings before a surface

@@ -10,86 +10,99 @@ namespace suite {
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 TraceStatistics PathKernel<Surfaces, Space, Throughputs, Estimator>::take_statistics() {
-  TraceStatistics all = space_.take_statistics();
-  const TraceStatistics touching = std::exchange(touching_, {});
+  TraceStatistics all = wave_.space.take_statistics();
+  const TraceStatistics touching = std::exchange(wave_.touching, {});
   all.rays += touching.rays, all.cycles += touching.cycles;
-  if (refracted_) {
-    const TraceStatistics ways = refracted_->take_statistics();
-    all.rays += ways.rays, all.cycles += ways.cycles;
-  }
+  if constexpr (Techniques<Paths>::kModels)
+    if (techniques_.manifold.on()) {
+      const TraceStatistics ways = techniques_.manifold.sight().take_statistics();
+      all.rays += ways.rays, all.cycles += ways.cycles;
+    }
   return all;
 }
 
 // Draws where all paths of the stage go on.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on() {
-  for (size_t i = 0; i < nodes_.size(); ++i) {
-    const auto& u = paths_[nodes_[i].path].u;
-    surfaces_.prepare(i, {u[0], u[1]});
+  for (size_t i = 0; i < wave_.nodes.size(); ++i) {
+    const auto& u = wave_.paths[wave_.nodes[i].path].u;
+    wave_.surfaces.prepare(i, {u[0], u[1]});
   }
-  surfaces_.prepare_all(nodes_.size());
-  if (Space::kGoesBack || !branches_.empty()) in_stage_ = active_;
+  wave_.surfaces.prepare_all(wave_.nodes.size());
+  if (Space::kGoesBack || techniques_.splitting.on()) in_stage_ = active_;
   active_.assign(onward_.begin(), onward_.end());
-  for (size_t i = 0; i < nodes_.size(); ++i)
-    if (go_on(i)) active_.push_back(nodes_[i].path);
-  if constexpr (Space::kGoesBack) go_back(in_stage_);
-  if (!branches_.empty()) take_up_ended();
+  for (size_t i = 0; i < wave_.nodes.size(); ++i)
+    if (go_on(i)) active_.push_back(wave_.nodes[i].path);
+  techniques_.residual.go_back(wave_, in_stage_, active_);
+  if (techniques_.splitting.on()) techniques_.splitting.take_up_ended(wave_, in_stage_, active_);
 }
 
 // One path; false when it ends here.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
-  records_[nodes_[i].path].end = PathEnd::absorbed;
-  if (is_guided(nodes_[i])) branch_guided(i);
-  if (at_first_interface(nodes_[i])) branch_mirrored(i);
+  wave_.records[wave_.nodes[i].path].end = PathEnd::absorbed;
+  if (techniques_.splitting.on()) branch(i);
   Continuation on;
   return draw(i, on) && go_on(i, on);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const Continuation& on) {
-  const uint32_t p = nodes_[i].path;
-  Path& path = paths_[p];
+  const uint32_t p = wave_.nodes[i].path;
+  Path& path = wave_.paths[p];
   const double own = on.density[path.knot];
   if (own <= 0) return false;
   double brightest = 0;
   const double shares = weigh(p, on, own, brightest);
   if (std::isnan(own) || std::isnan(brightest)) return fail(p);
-  if (brightest <= 0 && bins_ == 1) return false;  // nothing more can arrive
+  if (brightest <= 0 && wave_.bins == 1) return false;  // nothing more can arrive
   const double alive = survives(p, brightest * on.bright * ahead(i, on));
   if (alive == 0 || cut(i, on)) return false;
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
-  const bool medium = nodes_[i].event;
-  Event event{-path.direction, on.in, medium ? kNone : surfaces_.material(p), medium, on.dirac};
-  if constexpr (kStokes) event.polarised = polarise(nodes_[i], on.in, on.dirac ? &on : nullptr);
-  throughputs_.turn(p, event);
-  throughputs_.scatter(p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum}, event);
+  const bool medium = wave_.nodes[i].event;
+  Event event{-path.direction, on.in, medium ? kNone : wave_.surfaces.material(p), medium, on.dirac};
+  if constexpr (Paths::kStokes) event.polarised = wave_.polarise(wave_.nodes[i], on.in, on.dirac ? &on : nullptr);
+  wave_.throughputs.turn(p, event);
+  wave_.throughputs.scatter(p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum},
+                            event);
   const bool passed = leave(i, on);
-  if (passed && !branches_.empty() && path.order() == 1) part(p);
+  if (passed && techniques_.splitting.on() && path.order() == 1) techniques_.splitting.part(wave_, p);
   return true;
+}
+
+// The branches of a node that are kept.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::branch(size_t i) {
+  if constexpr (Space::kMedia) {
+    const PathNode& node = wave_.nodes[i];
+    const auto on_by = [&](size_t j, const Continuation& on) { return go_on(j, on); };
+    if (techniques_.guide.guides(wave_, node)) techniques_.splitting.branch_guided(wave_, techniques_.guide, i, on_by);
+    if (wave_.is_first(node) && !node.event && techniques_.manifold.is_interface(wave_, node))
+      techniques_.splitting.branch_mirrored(wave_, techniques_.manifold, i, on_by);
+  }
 }
 
 // Brings r_k and the throughputs at the knots behind the event, divided by A; returns A.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, const Continuation& on, double own,
                                                                   double& brightest) {
-  Path& path = paths_[p];
-  for (size_t k = 0; k < knots(); ++k) {
-    const float w = on.weight.spectrum ? on.weight.spectrum[knot_bins_[k]] : 1;
+  Path& path = wave_.paths[p];
+  for (size_t k = 0; k < wave_.knots(); ++k) {
+    const float w = on.weight.spectrum ? on.weight.spectrum[wave_.heroes.bins[k]] : 1;
     path.throughput[k] *= double{on.weight.scale} * w / own;
   }
   if constexpr (Surfaces::kKnots == 1) {
     brightest = path.throughput[0];
     return 1;
   }
-  const bool two_ways = kGuides && (on.branch != Branch::none || on.sided);
-  if (two_ways) path.other.set(knots(), path.relative, on.other, own);
-  path.relative.take(knots(), on.density, own);
-  const double shares = path.relative.mean(P());
-  path.relative.divide(knots(), shares);
-  if (two_ways) path.other.divide(knots(), shares);
-  for (size_t k = 0; k < knots(); ++k) {
+  const bool two_ways = Space::kMedia && (on.branch != Branch::none || on.sided);
+  if (two_ways) path.other.set(wave_.knots(), path.relative, on.other, own);
+  path.relative.take(wave_.knots(), on.density, own);
+  const double shares = path.relative.mean(wave_.P());
+  path.relative.divide(wave_.knots(), shares);
+  if (two_ways) path.other.divide(wave_.knots(), shares);
+  for (size_t k = 0; k < wave_.knots(); ++k) {
     path.throughput[k] /= shares;
     if (!(path.throughput[k] <= brightest)) brightest = path.throughput[k];
     if (std::isnan(brightest)) return shares;
@@ -100,52 +113,56 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, co
 // A path that cannot go on because a model gave what is no number: its sample is rejected and counted.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::fail(uint32_t p) {
-  contribution(p, kFromMatter).scale = std::numeric_limits<float>::quiet_NaN();
-  contribute();
-  hand_over();
+  wave_.contribution(p, kFromMatter).scale = std::numeric_limits<float>::quiet_NaN();
+  wave_.contribute();
+  wave_.hand_over();
   return false;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continuation& on) {
-  const NodeAt& node = nodes_[i];
+  const PathNode& node = wave_.nodes[i];
   constexpr bool kDraws = Surfaces::kDense > 0 || Space::kScatters;
-  const std::span<float> memory = kDraws ? dense(node.path) : std::span<float>{};
+  const std::span<float> memory = kDraws ? wave_.dense(node.path) : std::span<float>{};
   if (!draw(i, memory, on)) return false;
-  if (kDraws && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
-  if (kGuides && is_guided(node) && on.branch == Branch::none) share_with_guide(node, false, on);
-  settle_sky(i, on);
+  if (kDraws && on.weight.spectrum != memory.data()) wave_.throughputs.give_back(node.path);
+  auto& guide = techniques_.guide;
+  using Guide = std::remove_reference_t<decltype(guide)>;
+  if (guide.guides(wave_, node) && on.branch == Branch::none) guide.share(wave_, node, Guide::Way::own, on);
+  techniques_.chains.settle_sky(wave_, techniques_.manifold, i, on);
   return true;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::span<float> memory, Continuation& on) {
-  const NodeAt& node = nodes_[i];
-  const Path& path = paths_[node.path];
+  const PathNode& node = wave_.nodes[i];
+  const Path& path = wave_.paths[node.path];
   const Vec2 u{path.u[0], path.u[1]};
   if constexpr (Space::kScatters) {
     if (node.event) {
       const double who = dimensions::of_flight(path.stream, path.sample, path.flights)[2];
-      return space_.sample(node.path, path, u, who, memory, on) && share_with_side(node, on);
+      if (!wave_.space.sample(node.path, path, u, who, memory, on)) return false;
+      techniques_.side.share(wave_, node, on);
+      return true;
     }
   }
-  const double lobe_u = surfaces_.needs_lobe(node.path) ? numbers(node, dimensions::kOfSecond)[0] : 0;
+  const double lobe_u = wave_.surfaces.needs_lobe(node.path) ? wave_.numbers(node, dimensions::kOfSecond)[0] : 0;
   if constexpr (Surfaces::kDense > 0)
-    if (refracted_ && is_first(node) && refracted_->interfaces().has(surfaces_.material(node.path))) {
+    if (techniques_.manifold.on() && wave_.is_first(node) && techniques_.manifold.is_interface(wave_, node)) {
       // What water mirrors is weak, but in dark bands all there is. A power of 1/2: counts of strata have no rest.
       constexpr double kLeast = 0.125;
       const Dir out = -path.direction;
-      const int mirror = refracted_->interfaces().lobe(surfaces_.material(node.path), true);
-      if (mirror != SmoothInterfaces::kNoLobe && branches_.empty())
-        return surfaces_.sample_either(node.path, out, mirror, kLeast, lobe_u, path.knot, memory, on);
-      if (mirror != SmoothInterfaces::kNoLobe) {  // beside what branch_mirrored() has kept
-        const bool all = surfaces_.mirrors(node.path, out, mirror, path.knot) >= 1;
-        return surfaces_.sample_way(node.path, out, mirror, all, path.knot, memory, on);
+      const int mirror = techniques_.manifold.interfaces().lobe(wave_.surfaces.material(node.path), true);
+      if (mirror != SmoothInterfaces::kNoLobe && !techniques_.splitting.on())
+        return wave_.surfaces.sample_either(node.path, out, mirror, kLeast, lobe_u, path.knot, memory, on);
+      if (mirror != SmoothInterfaces::kNoLobe) {  // beside what the branch that is kept
+        const bool all = wave_.surfaces.mirrors(node.path, out, mirror, path.knot) >= 1;
+        return wave_.surfaces.sample_way(node.path, out, mirror, all, path.knot, memory, on);
       }
     }
   if constexpr (Surfaces::kDense > 0)
-    if (gloss_of(node).cell) return draw_with_gloss(i, u, lobe_u, memory, on);
-  return surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
+    if (techniques_.caustics.guides(wave_, node)) return techniques_.caustics.draw(wave_, i, u, lobe_u, memory, on);
+  return wave_.surfaces.sample(i, node.path, wave_.hits[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
 }
 
 // How much more of its light a path is worth to roulette that comes to a smooth surface from within water: most leave
@@ -153,11 +170,12 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
 // nothing. A value of 6 takes 0.5 to 0.7 of the work to an error in the bay of sample_scenes, coastal to red.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, const Continuation& on) const {
-  if constexpr (kGuides) {
+  if constexpr (Space::kMedia) {
     constexpr double kLeaves = 6, kClaimed = 0.1;
-    const double index = space_.index(nodes_[i].path);
-    if (passes_into_claimed_sky(i, on)) return kClaimed;  // what others bring is not worth while
-    if (!branches_.empty() && on.dirac && index > 1) return kLeaves * index * index;
+    const double index = wave_.space.index(wave_.nodes[i].path);
+    if (techniques_.chains.passes_into_claimed_sky(wave_, techniques_.manifold, i, on))
+      return kClaimed;  // what others bring is not worth while
+    if (techniques_.splitting.on() && on.dirac && index > 1) return kLeaves * index * index;
   }
   return 1;
 }
@@ -165,14 +183,14 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, cons
 // The probability with which the path has survived; 0 when roulette ends it.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p, double brightest) {
-  Path& path = paths_[p];
-  const double alive = Estimator::survival(brightest, path.order(), options_.roulette_after);
+  Path& path = wave_.paths[p];
+  const double alive = Estimator::survival(brightest, path.order(), wave_.options.roulette_after);
   if (alive == 1) return 1;
   if (path.stream.hashed(path.sample, dimensions::roulette(path.order() - 1)) >= alive) {
-    records_[p].end = PathEnd::roulette;
+    wave_.records[p].end = PathEnd::roulette;
     return 0;
   }
-  for (size_t k = 0; k < knots(); ++k) path.throughput[k] /= alive;
+  for (size_t k = 0; k < wave_.knots(); ++k) path.throughput[k] /= alive;
   return alive;
 }
 
@@ -180,43 +198,58 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p,
 // all light by itself.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(size_t i, const Continuation& on) {
-  const bool event = nodes_[i].event;
-  const uint32_t p = nodes_[i].path;
-  const Path& path = paths_[p];
-  const uint32_t most = event ? options_.max_scatterings : static_cast<uint32_t>(options_.max_nodes);
+  const bool event = wave_.nodes[i].event;
+  const uint32_t p = wave_.nodes[i].path;
+  const Path& path = wave_.paths[p];
+  const uint32_t most = event ? wave_.options.max_scatterings : static_cast<uint32_t>(wave_.options.max_nodes);
   if (most == 0 || (event ? path.scatterings : path.surfaces) < most) return false;
-  records_[p].end = PathEnd::max_nodes;
+  wave_.records[p].end = PathEnd::max_nodes;
   leave(i, on);
-  const double index = space_.index(p);
-  if (on.branch != Branch::forced) records_[p].truncated += path.throughput[0] * path.share * index * index;
+  const double index = wave_.space.index(p);
+  if (on.branch != Branch::forced) wave_.records[p].truncated += path.throughput[0] * path.share * index * index;
   return true;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const Continuation& on) {
-  const NodeAt& node = nodes_[i];
+  const PathNode& node = wave_.nodes[i];
   const uint32_t p = node.path;
-  Path& path = paths_[p];
+  Path& path = wave_.paths[p];
   path.branch = on.branch, path.sided = on.sided;
-  if (refracted_) leave_claims(node, on);
-  if (waters_.any()) path.water = water_behind(node, on.in);
+  if (techniques_.manifold.on()) leave_claims(node, on);
+  if (wave_.waters.any()) path.water = wave_.water_behind(node, on.in);
   if constexpr (Space::kScatters) {
     ++path.flights;
     if (node.event) {
-      path.origin = space_.place(p);
+      path.origin = wave_.space.place(p);
       path.direction = on.in;
       return false;
     }
   }
-  const Hit& hit = hits_[node.slot];
+  const Hit& hit = wave_.hits[node.slot];
   path.events |= on.dirac ? by_surface | by_dirac : by_surface;
   path.smooth += on.dirac;
-  const bool passed = passes(node, on);
-  if (passed) space_.cross(p, hit, surfaces_.material(p), on.in);
-  path.origin = surface_.tracer().leave(hit, on.in);
-  path.arrival += space_.delay(p) * step_along(hit, on.in);
+  const bool passed = wave_.passes(node, on);
+  if (passed) wave_.space.cross(p, hit, wave_.surfaces.material(p), on.in);
+  path.origin = wave_.surface.tracer().leave(hit, on.in);
+  path.arrival += wave_.space.delay(p) * step_along(hit, on.in);
   path.direction = on.in;
   return passed;
+}
+
+// The claims on the light that the path may meet behind the node.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::leave_claims(const PathNode& node, const Continuation& on) {
+  constexpr Claim kManifold = Claim::manifold(RefractedWay::kMostEvents);
+  PathClaims& claims = wave_.paths[node.path].claims;
+  const NodeClaims* const made = techniques_.chains.claims(wave_, node);
+  if (node.event) {
+    if (Space::kGoesBack) return claims.clear();  // it asks for nothing through interfaces
+    return claims.leave_scattering(made, kManifold, on.in);
+  }
+  if (techniques_.manifold.is_interface(wave_, node)) return claims.meet_interface(!wave_.passes(node, on));
+  // Nodes ask for what comes by other than Dirac lobes.
+  if (!on.dirac) claims.leave_surface(made, kManifold, on.in);
 }
 
 }  // namespace suite

@@ -1,19 +1,12 @@
 // The kernels of paths that carry polarisation.
 #include "transport/estimators/standard.h"
-#include "transport/kernel_back.h"
-#include "transport/kernel_branch.h"
-#include "transport/kernel_chain.h"
-#include "transport/kernel_claims.h"
 #include "transport/kernel_fly.h"
-#include "transport/kernel_gloss.h"
 #include "transport/kernel_go_on.h"
-#include "transport/kernel_guide.h"
 #include "transport/kernel_light.h"
-#include "transport/kernel_refract.h"
-#include "transport/kernel_side.h"
-#include "transport/kernel_stokes.h"
+#include "transport/kernel_meet.h"
 #include "transport/media/space_field.h"
 #include "transport/stokes_throughputs.h"
+#include "transport/wave_stokes.h"
 
 namespace suite {
 

@@ -40,8 +40,9 @@ struct Lane {
   HeroDensities<K> relative;  // r_k (shares.h)
   double throughput[K];       // at the knots, for roulette
   double before = 1;          // A before the last event over A after it
-  // r_k, with the density of the other way in which the last event's branches draw a scattering (kernel_branch.h).
-  // Or that of a side flight having come from the last event to here (kernel_side.h), where `sided`.
+  // r_k, with the density of the other way in which the last event's branches draw a scattering
+  // (techniques/splitting.h). Or that of a side flight having come from the last event to here
+  // (techniques/side_vertex.h), where `sided`.
   HeroDensities<K> other;
   Branch branch = Branch::none;
   bool sided = false;

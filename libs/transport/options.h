@@ -30,8 +30,9 @@ struct PipelineOptions {
   int roulette_after = 3;         // events before paths may end by chance
   bool explicit_sources = true;   // ask lights at every node (off only for comparisons)
   bool refracted_sources = true;  // ask lights through smooth interfaces, too (refracted_sight.h)
-  bool volume_chains = true;      // and along chains of scatterings (kernel_chain.h; off for comparisons)
-  bool side_flights = true;       // flights aside in media that scatter forwards (kernel_side.h; off for comparisons)
+  bool volume_chains = true;      // and along chains of scatterings (techniques/volume_chains.h; off for comparisons)
+  bool side_flights =
+      true;  // flights aside in media that scatter forwards (techniques/side_vertex.h; off for comparisons)
   // Photons that look for light which glossy surfaces throw (gloss_photons.h); 0: none, and nobody is guided there.
   uint32_t gloss_photons = 32768;
   Method method = Method::standard;
@@ -42,7 +43,8 @@ struct PipelineOptions {
   bool specialise = true;      // use kernels made for what a state really contains (off only for comparisons)
 };
 
-// Whether paths go back to places in real air, for shadows in it and the light of single places (kernel_back.h).
+// Whether paths go back to places in real air, for shadows in it and the light of single places
+// (techniques/air_residual.h).
 inline bool goes_back(const PipelineOptions& options) {
   return options.explicit_sources && options.method == Method::standard;
 }

@@ -37,10 +37,10 @@ struct KernelContext {
   const Optics& optics;
   const Environment& environment;
   const PipelineOptions& options;
-  bool keep_first = false;            // truth wants to know the first surfaces
-  bool receivers = false;             // rays may start at receivers
-  bool branches = true;               // paths may go on in more than one way (kernel_branch.h): their light is one sum
-  bool waters = false;                // contributions are to tell what they have to do with water
+  bool keep_first = false;  // truth wants to know the first surfaces
+  bool receivers = false;   // rays may start at receivers
+  bool branches = true;     // paths may go on in more than one way (techniques/splitting.h): their light is one sum
+  bool waters = false;      // contributions are to tell what they have to do with water
   const GlossGuide* gloss = nullptr;  // null: no continuation is drawn towards light that glossy surfaces throw
   bool stokes = false;                // paths carry polarisation: only by techniques that tell their matrices
 };

@@ -1,9 +1,9 @@
 // Air without media whose light knows the scene: shadows in it, and what single places of the scene send into it.
 //
 // Segments bring what they bring over an even ground (AirSpace). Beside that, a path that has ended goes back to one
-// place in the air on its way (kernel_back.h), is scattered there, and brings the difference that the scene makes
-// (light/air_vertices.h): what it meets from there counts less what the even ground or the sky would have sent, beams
-// count where they are missing.
+// place in the air on its way (techniques/air_residual.h), is scattered there, and brings the difference that the scene
+// makes (light/air_vertices.h): what it meets from there counts less what the even ground or the sky would have sent,
+// beams count where they are missing.
 #pragma once
 #include <algorithm>
 #include <limits>

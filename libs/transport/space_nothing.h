@@ -47,8 +47,9 @@ struct SpaceContext {
 class NothingSpace {
  public:
   static constexpr bool kScatters = false;  // paths are scattered between surfaces
+  static constexpr bool kMedia = false;     // by media of the scene
   static constexpr bool kFills = false;     // flights do anything at all
-  static constexpr bool kGoesBack = false;  // ended paths go back to places on their way (kernel_back.h)
+  static constexpr bool kGoesBack = false;  // ended paths go back to places on their way (techniques/air_residual.h)
   static constexpr uint32_t kDense = 0;     // spectra that fly() needs
   using Sight = PlainSight;
   struct Around {};  // what surrounds a path
@@ -88,7 +89,8 @@ class NothingSpace {
   bool dims(const Ray&, double, size_t, std::span<float>, std::span<double>) { return false; }
   // m, group index times way, along ray i.
   double optical_way(uint32_t p, size_t, double distance) const { return delay(p) * distance; }
-  // Along a way that interfaces bend (kernel_refract.h): it leaves the event, or the surface at `hit` towards `in`,
+  // Along a way that interfaces bend (techniques/manifold.h): it leaves the event, or the surface at `hit` towards
+  // `in`,
   void begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in) {
     if (clear_) clear_->begin_way(p, !event && dot(in, hit.normal) * dot(out, hit.normal) < 0, hit, material, in);
   }

@@ -21,7 +21,7 @@ struct Continuation {
   double bright = 1;  // light that may come from there, over even light: for roulette
   // Of an event that two branches leave: which of them this is, and the other one's density of going there.
   Branch branch = Branch::none;
-  bool sided = false;  // `other` is the density of a side flight (kernel_side.h)
+  bool sided = false;  // `other` is the density of a side flight (techniques/side_vertex.h)
   float other[kMaxKnots];
 };
 

@@ -23,13 +23,13 @@ places() {
 places "roulette"            1 'std::clamp\(brightness / kCarries, kLeast, 1\.0\)' libs
 places "roulette's number"   1 'dimensions::roulette\(' libs
 places "shared density"      1 'other \* \(other / own\)' libs
-# The others: side flights, which end where they ask (kernel_side.h), and photons that count nothing themselves.
+# The others: side flights, which end where they ask (techniques/side_vertex.h), and photons that count nothing themselves.
 places "questions to lights" 3 '(light|light->)(\.light)?->sample\(' libs/transport
 places "lights met outside"  2 '(\.|->)met_outside\(' libs/transport
 places "surfaces that shine" 2 '(\.|->)met_surface\(' libs/transport
-# The second one: side flights, which end where they ask (kernel_side.h).
+# The second one: side flights, which end where they ask (techniques/side_vertex.h).
 places "explicit light"      2 'Estimator::asked\(' libs/transport
-places "continuations"       1 'throughputs_\.scatter\(' libs/transport
+places "continuations"       1 'throughputs\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
 # Beside a stage's own rays: photons that are sent before there are any, which media a place lies in, what lies in one place with an interface, and ways through
 # interfaces, whose rays follow from each other.

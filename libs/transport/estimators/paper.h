@@ -23,7 +23,7 @@ struct PaperEstimator {
   static bool parallel(const LightNature&) { return false; }
 
   template <class Kernel>
-  static void ask(Kernel& kernel, const PipelineOptions&) {
+  static void sample_lights(Kernel& kernel, const PipelineOptions&) {
     size_t members = 0;
     for (const auto& light : kernel.lights())
       if (!light.nature.wide) members += light.light->members();
@@ -41,7 +41,7 @@ struct PaperEstimator {
         }
         if (const auto sample =
                 light.light->sample_member(chosen, probability, kernel.receiver(node), u, kernel.time(node)))
-          kernel.propose(node, light, *sample, 1);
+          kernel.connect(node, light, *sample, 1);
         break;
       }
     }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "transport/node.h"
 #include "transport/options.h"
 #include "transport/shares.h"
 
@@ -32,7 +33,7 @@ struct StandardEstimator {
   static bool parallel(const LightNature& light) { return light.far && !light.wide; }
 
   template <class Kernel>
-  static void ask(Kernel& kernel, const PipelineOptions& options) {
+  static void sample_lights(Kernel& kernel, const PipelineOptions& options) {
     bool parallel = true;
     for (const auto& light : kernel.lights()) {
       if (parallel && !StandardEstimator::parallel(light.nature)) kernel.set_parallel(), parallel = false;
@@ -41,9 +42,9 @@ struct StandardEstimator {
         const double asks = kernel.asks(node, light);
         if (!(asks > 0)) continue;
         if (light.only)
-          kernel.propose(node, light, *light.only, 1, asks);
+          kernel.connect(node, light, *light.only, 1, asks);
         else
-          ask_one(kernel, node, light, options, asks);
+          sample_one(kernel, node, light, options, asks);
       }
     }
     if (parallel) kernel.set_parallel();
@@ -51,8 +52,8 @@ struct StandardEstimator {
 
  private:
   template <class Kernel>
-  static void ask_one(Kernel& kernel, const typename Kernel::NodeAt& node, const typename Kernel::Asked& light,
-                      const PipelineOptions& options, double asks) {
+  static void sample_one(Kernel& kernel, const PathNode& node, const SampledLight& light,
+                         const PipelineOptions& options, double asks) {
     std::array<double, 4> u = kernel.numbers(node, light.use);
     if (light.first_number == 2) u = {u[2], u[3], 0, 0};
     const LightReceiver at = light.nature.far ? LightReceiver{} : kernel.receiver(node);
@@ -65,7 +66,7 @@ struct StandardEstimator {
     };
     if (draws == 1) {
       if (const auto sample = light.light->sample(at, u, kernel.time(node)))
-        kernel.propose(node, light, *sample, 1, asks);
+        kernel.connect(node, light, *sample, 1, asks);
       return;
     }
     std::array<std::array<double, 4>, LightNature::kMostDraws> v;
@@ -75,7 +76,7 @@ struct StandardEstimator {
       v[static_cast<size_t>(k)] = {(k + u[0]) / draws, turned(u[1], k), turned(u[2], k), turned(u[3], k)};
     light.light->sample_all(at, std::span(v).first(count), kernel.time(node), std::span(drawn).first(count));
     for (const auto& sample : std::span(drawn).first(count))
-      if (sample) kernel.propose(node, light, *sample, draws);
+      if (sample) kernel.connect(node, light, *sample, draws);
   }
 };
 

@@ -251,7 +251,7 @@ void Flights::weigh(LivePath& live, std::span<float> through) {
   result_.dense = true;
 }
 
-// F_k of the way that the path has before it (kernel_branch.h).
+// F_k of the way that the path has before it (techniques/splitting.h).
 void Flights::set_whole(const LivePath& live, double length, uint32_t background) {
   whole_.assign(media_.size(), 0);
   add_depths({live.origin, live.direction, live.time}, length, background, whole_);

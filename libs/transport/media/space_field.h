@@ -15,7 +15,7 @@ namespace suite {
 
 class FieldSpace {
  public:
-  static constexpr bool kScatters = true, kFills = true, kGoesBack = false;
+  static constexpr bool kScatters = true, kMedia = true, kFills = true, kGoesBack = false;
   static constexpr uint32_t kDense = 2;
   static constexpr uint16_t kEmitter = kFromMatter;
   using Sight = MediaSight;

@@ -24,8 +24,8 @@ namespace suite {
 
 enum class Technique : uint8_t {
   chance,         // continuations meet the light
-  manifold,       // kernel_refract.h
-  volume_chains,  // kernel_chain.h
+  manifold,       // techniques/manifold.h
+  volume_chains,  // techniques/volume_chains.h
 };
 
 // A light, as far as claims tell lights apart.

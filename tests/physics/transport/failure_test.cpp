@@ -4,16 +4,10 @@
 
 #include "tests/support/radiometry_kit.h"
 #include "transport/estimators/standard.h"
-#include "transport/kernel_branch.h"
-#include "transport/kernel_chain.h"
-#include "transport/kernel_claims.h"
 #include "transport/kernel_fly.h"
-#include "transport/kernel_gloss.h"
 #include "transport/kernel_go_on.h"
-#include "transport/kernel_guide.h"
 #include "transport/kernel_light.h"
-#include "transport/kernel_refract.h"
-#include "transport/kernel_side.h"
+#include "transport/kernel_meet.h"
 #include "transport/serve.h"
 #include "transport/sinks/radiance.h"
 

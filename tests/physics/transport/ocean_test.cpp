@@ -4,7 +4,8 @@
 // that solution, of two layers and of a profile of seven (problem 3's kind) as well: within 1 % of irradiances and 2 %
 // of the nadir radiance and three standard errors; in the run under the label `long` (SUITE_LONG) within these bounds,
 // with a noise of a third of them, where kMostRounds make it as small. They do not for the sun over the profile, whose
-// layers chains of scatterings do not leave (transport/kernel_chain.h): there the error bars stay part of the bound.
+// layers chains of scatterings do not leave (transport/techniques/volume_chains.h): there the error bars stay part of
+// the bound.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -224,7 +225,7 @@ TEST(Ocean, RendersAProfileAsTheReference) {
 }
 
 // The sun at 60 degrees, which is asked for through the surface. Particles send it on in a peak so narrow that places
-// find it only along chains that are drawn from its end (kernel_chain.h); in the long run.
+// find it only along chains that are drawn from its end (techniques/volume_chains.h); in the long run.
 TEST(Ocean, RendersAsTheReferenceUnderTheSun) {
   SourceSpecs sources;
   sources.add(SunSpec{dir_from_angles(std::acos(kMuSun), 0.3), 0, Curve::constant(1 / kMuSun)});

@@ -1,5 +1,5 @@
-// Side flights towards the sun (kernel_side.h) against paths without them: the same means in every band, with less
-// noise; and that a fault in how both ways are shared would be seen.
+// Side flights towards the sun (techniques/side_vertex.h) against paths without them: the same means in every band,
+// with less noise; and that a fault in how both ways are shared would be seen.
 #include <gtest/gtest.h>
 
 #include <cmath>

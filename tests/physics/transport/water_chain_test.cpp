@@ -1,6 +1,6 @@
 // Water over a bed under the sun and real air, whose light is asked for through the calm surface along chains
-// (transport/kernel_chain.h), against paths that meet the sky by chance: a glass ball far away, which no path sees, is
-// enough for nobody to know how many ways lead through the surface (transport/refracting_sheet.h).
+// (transport/techniques/volume_chains.h), against paths that meet the sky by chance: a glass ball far away, which no
+// path sees, is enough for nobody to know how many ways lead through the surface (transport/refracting_sheet.h).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

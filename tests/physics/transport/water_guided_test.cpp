@@ -1,6 +1,6 @@
 // Water that scatters forwards over a bed, under a sun that nodes ask for through its surface: continuations guided to
-// where that light is scattered from (transport/kernel_guide.h) against paths that meet a wide sun by chance, which
-// know nothing of guiding.
+// where that light is scattered from (transport/techniques/forward_guide.h) against paths that meet a wide sun by
+// chance, which know nothing of guiding.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -88,8 +88,8 @@ TEST(WaterGuided, FindsItInEveryBand) {
 }
 
 // Spread of a path over the mean under a small sun. Continuations drawn by the bed alone had 4, one guided or drawn
-// continuation 1.3, both 0.48; chains (kernel_chain.h) have 0.20. Rare chains weigh much: with other numbers for them
-// 0.92 was seen.
+// continuation 1.3, both 0.48; chains (techniques/volume_chains.h) have 0.20. Rare chains weigh much: with other
+// numbers for them 0.92 was seen.
 TEST(WaterGuided, SmallSunsMakeLittleNoise) {
   const Repeated seen = look(bay(hg(0.924)), 0.27 * kDegree, 512, true);
   const double spread = seen.error * 8 * std::sqrt(512.0) / seen.mean;

@@ -1,0 +1,392 @@
+// Multi-vertex (joint) volumetric next-event estimation (NEE): light that comes to a surface
+// through water that scatters it on its way.
+// Water scatters forwards, several times on a way of some metres, and what comes to a place from a small sun is as
+// likely to have been scattered 0, 1, 2 or n times. A path that looks for it from the place draws directions without
+// knowing whether they will end near the sun's. So they are drawn from its end: where a node has found a way to the
+// light (manifold.h), of direction s and length L in the matter beside the node, it also draws a chain of
+//   n scatterings, 1 <= n <= kMostLinks, with probability P_k(n), most of it ~ t^n / n!, t = L times the scattering
+//     coefficient (chain_laws.h),
+//   directions d_n as matter scatters what comes along s, d_(n-1) what comes along d_n, ..., d_1 from the node, and
+//   places: the next scattering is put at a share x of the way up to the next surface, or to kReach L, with a density
+//     that makes n places even on a way as steep as the light's, and that falls as light does on flatter ones.
+// From the last place the light is asked for as from a node. The phase functions are those of the densities but for the
+// last one, of which the way may come from another direction than s; in the mean Poisson's law, places and
+// transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
+// chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no surface.
+// They claim it (path/claims.h). Matter must let some light through unscattered
+// (kDeepest) and be the same everywhere beside the node, or in layers: boundaries that bend nothing are passed, chains
+// are drawn from the mean of what lies on the light's way, and count with what is there.
+//
+// The sky of the air is asked for in the same way, 0 <= n, towards a direction above the water that the path's knot has
+// drawn (sky_through_water.h), where the scene's only refractor is a sheet. Light from there may come through waves in
+// several ways; the one that Newton's method finds first is asked for, unless it is much focused, and chance keeps the
+// others (settle_sky). Both lights are asked for by scatterings as well, for what comes from more than half
+// way round towards the light: a path that runs away from it would have to turn round by chance, which forward
+// scattering does rarely. What comes from further ahead (ClaimCone) is left to where the path goes on. Based on: paths
+// drawn from the light's end on a given number of scatterings: I. Georgiev et al., "Joint importance sampling of
+// low-order volumetric scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye,
+// "Non-uniform random variate generation", 1986, chapter VI.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "light/sky_through_water.h"
+#include "transport/chain_laws.h"
+#include "transport/techniques/manifold.h"
+
+namespace suite {
+
+template <class Wave>
+class VolumeChains {
+ public:
+  using Path = typename Wave::Path;
+  // splits: whether paths are split, without which chains have no use.
+  void prepare(const Wave& wave, bool splits) {
+    on_ = splits && wave.options.volume_chains && wave.options.explicit_sources;
+  }
+  void begin(const Wave& wave) { claims_.assign(wave.nodes.size(), {}); }
+  // What chains of a node claim; null: there are none.
+  const NodeClaims* claims(const Wave& wave, const PathNode& node) const {
+    return claims_.empty() ? nullptr : &claims_[wave.number_of(node)];
+  }
+  // A chain to the light of the question, to which a way has been found `toward` a direction, of `length` m in the
+  // matter beside the node. Whether the light has been looked for so.
+  bool sample(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, Dir toward, double length, size_t knot);
+  // The light of the air's sky, which otherwise only chance would find, in one direction: unscattered and along a
+  // chain.
+  void sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node);
+  // Whether a continuation goes through the smooth interface of node i to light of the air's sky that chains may bring;
+  bool passes_into_claimed_sky(const Wave& wave, const Manifold<Wave>& manifold, size_t i,
+                               const Continuation& on) const;
+  // and gives up the claim on such light where chains look for another way through the interface than the path's, or
+  // for none.
+  void settle_sky(Wave& wave, Manifold<Wave>& manifold, size_t i, const Continuation& on) const;
+
+ private:
+  static constexpr int kMostLinks = 24;
+  static_assert(dimensions::of_link(kMostLinks - 1, true) < dimensions::of_link_place(1, kMostLinks, true) &&
+                dimensions::of_link_place(kMostLinks, kMostLinks, true) < dimensions::kMostPerChain);
+  static constexpr double kReach = 2, kDeepest = 8;
+  struct Chain {
+    int links;                                    // scatterings
+    Dir toward[kMostLinks + 1];                   // from the node, and from each of them
+    double density[kMostLinks];                   // of each direction but the last one, at the path's knot
+    uint32_t mean;                                // the event that stands for all matter up to the light's interface
+    HeroDensities<Wave::Surfaces::kKnots> share;  // r_k of it all, over the density that drew it
+  };
+  // The mean of the matter on `length` m towards the light as an event; kNone where it is of no use for chains.
+  uint32_t mean_toward(Wave& wave, const PathNode& node, Dir toward, double length);
+  // Draws number and directions of scatterings.
+  bool draw_chain(Wave& wave, const PathNode& node, Dir toward, double length, uint32_t mean, bool sky);
+  // A set of numbers of the chain that the path draws at its last surface.
+  std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const;
+  ClaimCone cone_of(const Wave& wave, const Manifold<Wave>& manifold, const PathNode& node, uint16_t light,
+                    size_t knot) const;
+  Ray ray_from(const Wave& wave, const PathNode& node, Dir toward) const;
+  // Goes to its places; false where it meets what it cannot pass.
+  bool follow_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, size_t knot);
+  // By what scattering i of the chain is put on its way of `most` m, at knot k.
+  LinkPlace link_place(const Wave& wave, const Manifold<Wave>& manifold, const RefractedQuestion& q, size_t i,
+                       double most, size_t k) const;
+  // What link i of the chain, where its way has come to, makes of light that comes from a direction.
+  void scatter_along(Wave& wave, size_t i, Dir from, std::span<float> through, std::span<float> memory);
+  // Looks for the light from the last place.
+  bool shine_behind_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, size_t knot, Vec3 place,
+                          double scale, double arrival);
+  // How far along a ray a flight of the chain may reach, m: to the next surface, or to where a path that meets none has
+  // left the body around it, which has a hole.
+  double free_way(Wave& wave, const Ray& ray);
+  void sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node, size_t knot, const SkyThroughWater& sky,
+                  Dir to, double deep, uint32_t mean);
+
+  bool on_ = false;
+  std::vector<NodeClaims> claims_;  // of nodes; empty where nothing refracts
+  Chain chain_;
+  std::vector<float> through_;
+};
+
+// Where media do not scatter paths.
+template <class Wave>
+class NoVolumeChains {
+ public:
+  void prepare(const Wave&, bool) {}
+  void begin(const Wave&) {}
+  const NodeClaims* claims(const Wave&, const PathNode&) const { return nullptr; }
+  template <class M>
+  bool sample(Wave&, M&, const RefractedQuestion&, Dir, double, size_t) {
+    return false;
+  }
+  template <class M>
+  void sample_sky(Wave&, M&, const PathNode&) {}
+  template <class M>
+  bool passes_into_claimed_sky(const Wave&, const M&, size_t, const Continuation&) const {
+    return false;
+  }
+  template <class M>
+  void settle_sky(Wave&, M&, size_t, const Continuation&) const {}
+};
+
+template <class Wave>
+bool VolumeChains<Wave>::sample(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, Dir toward,
+                                double length, size_t knot) {
+  const PathNode& node = wave.nodes[q.node];
+  const Path& path = wave.paths[node.path];
+  if (!on_ || !q.end.far || !wave.space.even_around(node.path)) return false;
+  if (path.claims.stands(Technique::volume_chains)) return false;
+  const Dir normal = wave.hits[node.slot].normal;
+  if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
+  NodeClaims& claims = claims_[q.node];
+  constexpr auto kSmall = ClaimedLight::Kind::small;
+  if (const Claim* const claim = claims.of(kSmall); claim && claim->light != q.light) return false;
+  const uint32_t mean = mean_toward(wave, node, toward, length);
+  if (mean == kNone) return false;
+  if (!claims.of(kSmall))
+    claims.add(Claim::chains(q.light, kMostLinks, RefractedWay::kMostEvents),
+               cone_of(wave, manifold, node, q.light, knot), kReach * length);
+  claims.add_hero(kSmall, knot);
+  if (draw_chain(wave, node, toward, length, mean, false) && claims.are_for(chain_.toward[0]))
+    follow_chain(wave, manifold, q, knot);
+  return true;
+}
+
+template <class Wave>
+uint32_t VolumeChains<Wave>::mean_toward(Wave& wave, const PathNode& node, Dir toward, double length) {
+  wave.space.begin_way(node.path, true, {}, kNone, {}, {});
+  const uint32_t mean = wave.space.mean_of_way(ray_from(wave, node, toward), length);
+  if (!(wave.space.asymmetry(mean) > kForwardScattering)) return kNone;
+  for (size_t k = 0; k < wave.knots(); ++k) {
+    const double depth = wave.space.scattering(mean, k) * length;
+    if (!(depth > 0 && depth < kDeepest)) return kNone;
+  }
+  return mean;
+}
+
+template <class Wave>
+bool VolumeChains<Wave>::draw_chain(Wave& wave, const PathNode& node, Dir toward, double length, uint32_t mean,
+                                    bool sky) {
+  const Path& path = wave.paths[node.path];
+  Chain& chain = chain_;
+  chain.mean = mean;
+  const auto own = static_cast<size_t>(path.knot);
+  const std::array<double, 4> u = chain_numbers(path, node.event, sky, dimensions::of_link(0, sky));
+  const int least = sky ? 0 : 1;
+  const auto count = [&](size_t k) {
+    return LinkCount(wave.space.scattering(mean, k) * length, wave.space.albedo(mean, k), least, kMostLinks);
+  };
+  chain.links = count(own).draw(u[3]);
+  double of_count[kMaxKnots];
+  for (size_t k = 0; k < wave.knots(); ++k) of_count[k] = count(k).probability(chain.links);
+  chain.share.set(wave.knots(), path.relative, of_count, 1);
+  const auto n = static_cast<size_t>(chain.links);
+  chain.toward[n] = toward;
+  for (size_t i = n; i-- > 0;) {
+    const std::array<double, 4> v =
+        i + 1 == n ? u : chain_numbers(path, node.event, sky, dimensions::of_link(n - 1 - i, sky));
+    if (!wave.space.scatter(mean, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i])) return false;
+    float density[kMaxKnots];
+    wave.space.densities(mean, -chain.toward[i + 1], chain.toward[i], {density, wave.knots()});
+    chain.density[i] = density[own];
+    if (!(density[own] > 0)) return false;
+    chain.share.take(wave.knots(), density, double{density[own]});
+  }
+  return true;
+}
+
+template <class Wave>
+std::array<double, 4> VolumeChains<Wave>::chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const {
+  const uint32_t at = event ? dimensions::kNodes + path.flights : path.surfaces - 1;
+  return dimensions::of_chain(path.stream, path.sample, at, sky, set);
+}
+
+template <class Wave>
+bool VolumeChains<Wave>::follow_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, size_t knot) {
+  const PathNode& node = wave.nodes[q.node];
+  const uint32_t p = node.path;
+  const Path& path = wave.paths[p];
+  Chain& chain = chain_;
+  if (wave.options.max_scatterings > 0 &&
+      path.scatterings + static_cast<uint32_t>(chain.links) > wave.options.max_scatterings)
+    return false;
+  const Hit& hit = wave.hits[node.slot];
+  if (!node.event && !wave.surfaces.takes(p, hit, -path.direction, chain.toward[0])) return false;
+  through_.resize(wave.bins);
+  const std::span<float> through = through_, memory = wave.dense(p);
+  const Factor factor = wave.evaluate(node, chain.toward[0], memory);
+  for (size_t i = 0; i < wave.bins; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
+  manifold.keep_bins_of(wave, knot, through);
+  wave.space.begin_way(p, node.event, hit, node.event ? kNone : wave.surfaces.material(p), -path.direction,
+                       chain.toward[0]);
+  double arrival = 0;
+  Ray ray = ray_from(wave, node, chain.toward[0]);
+  for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
+    ray.direction = chain.toward[i];
+    const double most = std::min(free_way(wave, ray), claims_[q.node].reach());
+    if (!(most > 0)) return wave.throughputs.give_back(p), false;
+    const std::array<double, 4> u =
+        chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
+    const auto own = static_cast<size_t>(path.knot);
+    const double x = wave.space.share_of_way(link_place(wave, manifold, q, i, most, own).draw({u[0], u[1]}), most, own);
+    const auto density_at = [&](size_t k) {
+      const auto at = wave.space.share_of_depth(x, most, k);
+      return link_place(wave, manifold, q, i, most, k).density(at.share) * at.change;
+    };
+    const double density = density_at(own);
+    if (!(density > 0)) return wave.throughputs.give_back(p), false;
+    double of_place[kMaxKnots];
+    for (size_t k = 0; k < wave.knots(); ++k) of_place[k] = density_at(k);
+    chain.share.take(wave.knots(), of_place, density);
+    // At once: 24 ways of 100 m each, and as many coefficients of 0.01 1/m, do not fit into floats.
+    for (size_t b = 0; b < wave.bins; ++b) through[b] *= static_cast<float>(most / density);
+    arrival += x * most * wave.space.follow_way(ray, x * most, through, wave.transmission);
+    ray.origin += ray.direction * (x * most);
+    if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(wave, i, chain.toward[i + 1], through, memory);
+  }
+  wave.throughputs.give_back(p);
+  wave.space.hold_way();
+  return shine_behind_chain(wave, manifold, q, knot, ray.origin, 1 / chain.share.mean(wave.P()), arrival);
+}
+
+template <class Wave>
+LinkPlace VolumeChains<Wave>::link_place(const Wave& wave, const Manifold<Wave>& manifold, const RefractedQuestion& q,
+                                         size_t i, double most, size_t k) const {
+  constexpr double kFlattest = 0.05, kSteep = 2;
+  const auto n = static_cast<size_t>(chain_.links);
+  const Dir light = chain_.toward[n], up = manifold.sight().has_sheet() ? manifold.sight().sheet_axis() : light;
+  const double steep = dot(light, up), rise = std::copysign(std::max(kFlattest, std::fabs(steep)), steep),
+               albedo = wave.space.albedo(chain_.mean, k), extinction = wave.space.scattering(chain_.mean, k) / albedo,
+               height = claims_[q.node].reach() / kReach;
+  const auto more = [&](size_t j) { return extinction * (1 - dot(chain_.toward[j], up) / rise); };  // 1/m
+  int others = 0;
+  for (size_t j = i + 1; j < n; ++j) others += std::fabs(more(j)) * height < kSteep;
+  const double depth = wave.space.depth_of_way(most, k) / albedo;
+  return {depth - extinction * dot(chain_.toward[i], up) / rise * most, others};
+}
+
+template <class Wave>
+bool VolumeChains<Wave>::shine_behind_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q,
+                                            size_t knot, Vec3 place, double scale, double arrival) {
+  constexpr uint64_t kPurpose = 0x636861696e;
+  const PathNode& node = wave.nodes[q.node];
+  const uint32_t p = node.path;
+  const Path& path = wave.paths[p];
+  const auto links = static_cast<uint32_t>(chain_.links);
+  RefractedSight::Node from;
+  from.place = place, from.time = path.time, from.draw = path.draw;
+  const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
+  const auto ways = q.sky ? manifold.sight().first_through_sheet(from, q.end.direction, knot)
+                          : manifold.sight().find(from, q.end, knot, seed);
+  for (const RefractedWay& way : ways) {
+    const std::span<float> through = wave.dense(p, 3), memory = wave.throughputs.take(p);
+    std::copy(through_.begin(), through_.end(), through.begin());
+    wave.space.resume_way();
+    scatter_along(wave, links - 1, way.direction, through, memory);
+    manifold.shine_behind(wave, way, q, knot, {through, arrival, scale, links, chain_.toward[0]});
+  }
+  return true;
+}
+
+template <class Wave>
+double VolumeChains<Wave>::free_way(Wave& wave, const Ray& ray) {
+  const double way = wave.space.free_way(ray);
+  if (way < std::numeric_limits<double>::infinity() || !wave.environment.earth) return way;
+  const auto met = wave.environment.earth->meet(ray.origin, ray.direction, way);
+  return met ? met->distance : way;
+}
+
+template <class Wave>
+Ray VolumeChains<Wave>::ray_from(const Wave& wave, const PathNode& node, Dir toward) const {
+  const Path& path = wave.paths[node.path];
+  return {node.event ? wave.space.place(node.path) : wave.surface.tracer().leave(wave.hits[node.slot], toward), toward,
+          path.time, path.draw};
+}
+
+// By the middle of the light, as flat water would have its way leave the node: a cone that followed the sample of the
+// light that chains bring would take it for where it brings most, and what it leaves out would be less than that.
+template <class Wave>
+ClaimCone VolumeChains<Wave>::cone_of(const Wave& wave, const Manifold<Wave>& manifold, const PathNode& node,
+                                      uint16_t light, size_t knot) const {
+  if (!node.event) return {};
+  const auto beam = wave.environment.lights[light]->beam();
+  Dir toward = beam ? beam->direction : Dir{0, 0, 1};
+  if (manifold.sight().has_sheet()) toward = manifold.sight().sheet_guess(toward, knot).value_or(toward);
+  return {false, wave.paths[node.path].direction, toward};
+}
+
+template <class Wave>
+void VolumeChains<Wave>::scatter_along(Wave& wave, size_t i, Dir from, std::span<float> through,
+                                       std::span<float> memory) {
+  const Factor w = wave.space.evaluate(wave.space.stand_on_way(), dot(chain_.toward[i], from), memory);
+  const auto scale = static_cast<float>(double{w.scale} / chain_.density[i]);
+  for (size_t b = 0; b < wave.bins; ++b) through[b] *= scale * (w.spectrum ? w.spectrum[b] : 1.0f);
+}
+
+template <class Wave>
+void VolumeChains<Wave>::sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node) {
+  const SkyThroughWater* const sky = on_ ? wave.space.hidden_sky() : nullptr;
+  const Path& path = wave.paths[node.path];
+  if (!sky || !manifold.asks_through(wave, node) || !wave.space.even_around(node.path)) return;
+  if (path.claims.stands(Technique::volume_chains)) return;
+  const Vec3 place = manifold.from_node(wave, node).place;
+  const double deep = manifold.sight().below_sheet(place);
+  if (!(deep > 0)) return;
+  const Dir up = manifold.sight().sheet_axis();
+  const uint32_t mean = mean_toward(wave, node, up, deep);
+  if (mean == kNone) return;
+  claims_[wave.number_of(node)].add(Claim::chains_of_sky(kMostLinks), ClaimCone{!node.event, path.direction, up},
+                                    kReach * deep);
+  const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
+  const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
+  if (!(sample.density > 0)) return;
+  for (size_t k = 0; k < wave.knots(); ++k) {
+    if (manifold.is_alive(wave, path, k)) sample_sky(wave, manifold, node, k, *sky, sample.direction, deep, mean);
+  }
+}
+
+template <class Wave>
+void VolumeChains<Wave>::sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node, size_t knot,
+                                    const SkyThroughWater& sky, Dir to, double deep, uint32_t mean) {
+  const RefractedQuestion q{
+      static_cast<uint32_t>(wave.number_of(node)), Wave::Space::kEmitter, false, {to, {}}, 1, nullptr, 0, true};
+  const auto toward = manifold.sight().sheet_guess(to, knot);
+  if (!toward) return;
+  if (!draw_chain(wave, node, *toward, deep / manifold.sight().steepness(*toward), mean, true)) return;
+  double density[kMaxKnots];
+  sky.densities(to, {density, wave.knots()});
+  chain_.share.take(wave.knots(), density, 1);
+  const NodeClaims& claims = claims_[q.node];
+  if (chain_.links > 0) {
+    if (claims.are_for(chain_.toward[0])) follow_chain(wave, manifold, q, knot);
+    return;
+  }
+  RefractedQuestion alone = q;
+  alone.scale /= chain_.share.mean(wave.P());
+  for (const RefractedWay& way : manifold.sight().first_through_sheet(manifold.from_node(wave, node), to, knot))
+    if (claims.are_for(way.direction)) manifold.shine_along(wave, way, alone, knot);
+}
+
+template <class Wave>
+bool VolumeChains<Wave>::passes_into_claimed_sky(const Wave& wave, const Manifold<Wave>& manifold, size_t i,
+                                                 const Continuation& on) const {
+  const PathNode& node = wave.nodes[i];
+  const Path& path = wave.paths[node.path];
+  return !path.claims.empty() && on.dirac && !node.event && wave.passes(node, on) &&
+         owner(path.claims.all(), path.claims.behind_interface(false), ClaimedLight::sky(), manifold.hero_of(path)) !=
+             Technique::chance;
+}
+
+template <class Wave>
+void VolumeChains<Wave>::settle_sky(Wave& wave, Manifold<Wave>& manifold, size_t i, const Continuation& on) const {
+  if (!passes_into_claimed_sky(wave, manifold, i, on)) return;
+  Path& path = wave.paths[wave.nodes[i].path];
+  double density[kMaxKnots], any = 0;  // below the horizon it is never drawn
+  wave.space.hidden_sky()->densities(on.in, {density, wave.knots()});
+  for (size_t k = 0; k < wave.knots(); ++k) any += path.relative[k] * density[k];
+  RefractedSight::Node from;
+  from.place = path.origin - path.direction * path.claims.suffix().flown_m;
+  from.time = path.time, from.draw = path.draw;
+  if (!(any > 0 && manifold.sight().is_first_through_sheet(from, path.direction, on.in, manifold.hero_of(path))))
+    path.claims.give_up_sky();
+}
+
+}  // namespace suite
