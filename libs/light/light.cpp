@@ -9,6 +9,8 @@ void Light::sample_all(const LightReceiver& at, std::span<const std::array<doubl
   for (size_t k = 0; k < u.size(); ++k) drawn[k] = sample(at, u[k], time);
 }
 
+std::optional<Vec3> Light::point_of(size_t, double) const { return std::nullopt; }
+
 std::optional<LightMet> Light::met_outside(Dir, double) const { return std::nullopt; }
 
 std::optional<LightPlace> Light::draw_place(const LightReceiver&, const std::array<double, 4>&, double) const {

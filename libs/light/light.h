@@ -121,6 +121,9 @@ class Light {
   // leave it to chance), and a sample of one of them (0 .. members() - 1) that was chosen with a probability, which the
   // sample includes. u[0] is not used: it has chosen. Bug when there are none.
   virtual size_t members() const { return 1; }
+  virtual bool is_point(size_t) const { return false; }
+  // Where such a member shines from, in the scene, m, ENU, at a time (s); nothing while it is dark.
+  virtual std::optional<Vec3> point_of(size_t member, double time) const;
   virtual std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
                                                    const std::array<double, 4>& u, double time) const = 0;
 

@@ -250,8 +250,9 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
   const Vec3 p0 = vertex(0), e1 = vertex(1) - p0, e2 = vertex(2) - p0, within = e1 * double{u} + e2 * double{v};
   const Vec3 p = p0 + within, across = cross(e1, e2);
   // The way from a corner is rounded, too, when a ray begins at the hit.
-  const Vec3 most{std::fmax(std::fabs(p.x), std::fabs(within.x)), std::fmax(std::fabs(p.y), std::fabs(within.y)),
-                  std::fmax(std::fabs(p.z), std::fabs(within.z))};
+  // (std::max: fmax is a call.)
+  const Vec3 most{std::max(std::fabs(p.x), std::fabs(within.x)), std::max(std::fabs(p.y), std::fabs(within.y)),
+                  std::max(std::fabs(p.z), std::fabs(within.z))};
   double reach = 0;  // largest coordinate that was rounded to float on the way to this hit, m
   double span = 0;   // across the frame in which coordinates are
   if (direct) {
@@ -268,7 +269,7 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
     // The winding turns round under a mirror; the front side stays the front side.
     if (to_world.determinant() < 0) hit.normal = -hit.normal;
     const double floor = 1e-3 * world_.meshes[mesh].scale;
-    const Vec3 q{std::fmax(most.x, floor), std::fmax(most.y, floor), std::fmax(most.z, floor)};
+    const Vec3 q{std::max(most.x, floor), std::max(most.y, floor), std::max(most.z, floor)};
     for (size_t k = 0; k < 9; k += 3) {
       const double x = std::fabs(to_world.a[k]), y = std::fabs(to_world.a[k + 1]), z = std::fabs(to_world.a[k + 2]);
       reach = std::max(reach, x * q.x + y * q.y + z * q.z);

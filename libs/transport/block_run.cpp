@@ -199,6 +199,12 @@ void BlockRun::take(uint32_t p) {
     pipeline_.truth_.add({record, record.met ? &kernel.first(p) : nullptr}, sums_.truth(slot, scramble));
 }
 
+// 0, or where samples may have a sign what no number is below: light behind analysers that warm matter sends, of which
+// one direction is drawn, and rounding at crossed polarizers.
+inline float BlockRun::lowest(size_t channel) const {
+  return pipeline_.is_signed() || pipeline_.of_stokes() || pipeline_.channels_.is_signed(channel) ? -3e38f : 0;
+}
+
 // Adds the light of a path to its problem; false, with nothing added, when that is no light.
 bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   double* const sums = sums_.sums(slot, scramble);
@@ -223,11 +229,6 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   return true;
 }
 
-// 0, or where samples may have a sign what no number is below: light behind analysers that warm matter sends, of which
-// one direction is drawn, and rounding at crossed polarizers.
-float BlockRun::lowest(size_t channel) const {
-  return pipeline_.is_signed() || pipeline_.of_stokes() || pipeline_.channels_.is_signed(channel) ? -3e38f : 0;
-}
 // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
 bool BlockRun::good(std::span<const float> light, float lowest) {
   constexpr float kMost = 3e38f;

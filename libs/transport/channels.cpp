@@ -65,19 +65,25 @@ const Registry<ChannelRow>& channel_rows() {
   return table;
 }
 
-ChannelPlan::ChannelPlan(std::span<const std::string> names) {
-  for (const std::string& name : names) rows_.push_back(&channel_rows().find(name));
-  SUITE_CHECK(!rows_.empty() && rows_.front() == &*channel_rows().begin());
+namespace {
+
+std::vector<const ChannelRow*> rows_of(std::span<const std::string> names) {
+  std::vector<const ChannelRow*> rows;
+  for (const std::string& name : names) rows.push_back(&channel_rows().find(name));
+  SUITE_CHECK(!rows.empty() && rows.front() == &*channel_rows().begin());
+  return rows;
 }
 
-bool ChannelPlan::of_water() const {
-  return std::any_of(rows_.begin(), rows_.end(), [](const ChannelRow* row) { return row->of_water; });
-}
+}  // namespace
 
-bool ChannelPlan::of_stokes() const {
-  return std::any_of(rows_.begin(), rows_.end(), [](const ChannelRow* row) { return row->of_stokes; });
-}
+ChannelPlan::ChannelPlan(std::span<const std::string> names) : ChannelPlan(rows_of(names)) {}
 
-ChannelPlan::ChannelPlan(std::vector<const ChannelRow*> rows) : rows_(std::move(rows)) { SUITE_CHECK(!rows_.empty()); }
+ChannelPlan::ChannelPlan(std::vector<const ChannelRow*> rows) : rows_(std::move(rows)) {
+  SUITE_CHECK(!rows_.empty());
+  for (const ChannelRow* row : rows_) {
+    of_water_ = of_water_ || row->of_water;
+    of_stokes_ = of_stokes_ || row->of_stokes;
+  }
+}
 
 }  // namespace suite

@@ -34,12 +34,13 @@ class ChannelPlan {
   float share(size_t channel, const Contribution& c) const { return rows_[channel]->make(c); }
   bool is_signed(size_t channel) const { return rows_[channel]->is_signed; }
   int component(size_t channel) const { return rows_[channel]->component; }
-  bool of_water() const;   // one of them is
-  bool of_stokes() const;  // one of them is
+  bool of_water() const { return of_water_; }    // one of them is
+  bool of_stokes() const { return of_stokes_; }  // one of them is
   bool operator==(const ChannelPlan&) const = default;
 
  private:
   std::vector<const ChannelRow*> rows_;
+  bool of_water_ = false, of_stokes_ = false;
 };
 
 }  // namespace suite

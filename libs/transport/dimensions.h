@@ -34,8 +34,12 @@ inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (techn
 inline constexpr uint32_t kPerChain = 3;                      // of one to the sun and one to the sky
 inline constexpr Blocks kChain{1232, 2 * kPerChain* kNodes};  // chains of scatterings before a surface
 
+inline constexpr uint32_t kPerBeside = 2;                     // where, and a light
+inline constexpr Blocks kBeside{1616, kPerBeside* kFlights};  // scatterings near lamps (techniques/equiangular.h)
+
 constexpr bool disjoint() {
-  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide, kChain};
+  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight,
+                            kPlace,  kGuided,  kSide,   kChain,      kBeside};
   for (const Blocks& a : all)
     for (const Blocks& b : all)
       if (&a != &b && a.first < b.end() && b.first < a.end()) return false;
@@ -55,7 +59,8 @@ enum class Hashed : uint32_t {
   guided,
   side,
   chain = side + kPerSide,
-  end
+  beside,
+  end = beside + kPerBeside
 };
 static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed numbers do not fit into 32 bits");
 // Of Hashed::choices.
@@ -137,6 +142,11 @@ inline std::array<double, 4> of_chain(const SampleStream& stream, uint32_t sampl
 inline std::array<double, 4> of_side(const SampleStream& stream, uint32_t sample, uint32_t n, uint32_t second) {
   if (n < kFlights) return stream.draw(sample, kSide.first + kPerSide * n + second);
   return hashed(stream, sample, Hashed::side, second, n);
+}
+// Numbers of the scattering near a lamp on the n-th flight. First: which lamp, where; second: a light's.
+inline std::array<double, 4> of_beside(const SampleStream& stream, uint32_t sample, uint32_t n, uint32_t second) {
+  if (n < kFlights) return stream.draw(sample, kBeside.first + kPerBeside * n + second);
+  return hashed(stream, sample, Hashed::beside, second, n);
 }
 inline std::array<double, 4> at_scattering(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
   if (const uint32_t block = block_at_scattering(n, use); block != kHashed) return stream.draw(sample, block);

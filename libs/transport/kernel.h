@@ -7,9 +7,9 @@
 //   resolve  visible samples contribute, weighted by MIS with continuations (shares.h)
 //   go on    draws the continuation, plays Russian roulette, ends paths
 // What the kernel and the techniques share is the wave (wave.h); the techniques that it holds are those of
-// techniques/set.h, and path/claims.h says which of them brings which light. A template over what surfaces can be
-// (Surfaces: surfaces_any.h, surfaces_matte.h), what fills space (Space: space_nothing.h, media/space_field.h), the
-// algebra of throughputs (throughput.h) and the estimator (estimators/), made for each combination that occurs in
+// techniques/set.h, and path/claims.h says which of them brings which light. A template over the wave: what surfaces
+// can be (Surfaces: surfaces_any.h, surfaces_matte.h), what fills space (Space: space_nothing.h, media/space_field.h),
+// the algebra of throughputs (throughput.h) and the estimator (estimators/), made for each combination that occurs in
 // kernels.cpp. Definitions: kernel_*.h. Based on: Goodenough & Brown, section IV; Veach, "Robust Monte Carlo methods
 // for light transport simulation", 1997.
 #pragma once
@@ -21,11 +21,14 @@
 
 namespace suite {
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
+template <class Wave>
 class PathKernel final : public PathTracing {
  public:
-  using Paths = Wave<Surfaces, Space, Throughputs, Estimator>;
-  using Path = typename Paths::Path;
+  using Path = typename Wave::Path;
+  using Surfaces = typename Wave::Surfaces;
+  using Space = typename Wave::Space;
+  using Throughputs = typename Wave::Throughputs;
+  using Estimator = typename Wave::Estimator;
   PathKernel(const KernelContext& context, size_t width, Throughputs& throughputs, Sink<Throughputs>& sink);
 
   void start(uint32_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) override;
@@ -64,7 +67,16 @@ class PathKernel final : public PathTracing {
   }
 
  private:
-  enum class Stage : uint8_t { leave, arrive, look, fly_aside, look_aside, go_on } stage_ = Stage::leave;
+  enum class Stage : uint8_t {
+    leave,
+    beside,
+    look_beside,
+    arrive,
+    look,
+    fly_aside,
+    look_aside,
+    go_on
+  } stage_ = Stage::leave;
   using Question = SightQuestion;
 
   // kernel_fly.h: from one node to the next.
@@ -107,8 +119,8 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE bool leave(size_t i, const Continuation& on);
   void leave_claims(const PathNode& node, const Continuation& on);
 
-  Paths wave_;
-  Techniques<Paths> techniques_;
+  Wave wave_;
+  Techniques<Wave> techniques_;
   const bool keep_first_;
   const bool draws_;  // something decides by Ray::draw
   // Of each path.

@@ -8,9 +8,8 @@
 
 namespace suite {
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelContext& c, size_t width,
-                                                                Throughputs& throughputs, Sink<Throughputs>& sink)
+template <class Wave>
+PathKernel<Wave>::PathKernel(const KernelContext& c, size_t width, Throughputs& throughputs, Sink<Throughputs>& sink)
     : wave_(c, width, throughputs, sink),
       keep_first_(c.keep_first),
       draws_(c.surface.tracer().has_holes() || wave_.lost),
@@ -23,9 +22,8 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
   points_.reserve(width);
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, const SensorRay& ray,
-                                                                const SampleStream& stream, uint32_t sample) {
+template <class Wave>
+void PathKernel<Wave>::start(uint32_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) {
   Path& path = wave_.paths[p];
   path.stream = stream, path.sample = sample;
   if (draws_) path.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
@@ -56,18 +54,27 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   received_.push_back(p);
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::next(TraceRequest& request) {
+template <class Wave>
+bool PathKernel<Wave>::next(TraceRequest& request) {
   for (;;) switch (stage_) {
       case Stage::leave:
         if (active_.empty() && received_.empty() && !techniques_.residual.any_returned()) {
           first_stage_ = true;
           return false;
         }
-        stage_ = Stage::arrive;
+        stage_ = Stage::beside;
         if (active_.empty()) break;  // all start at receivers or places in the air
         request_hits(request);
         return true;
+      case Stage::beside:
+        stage_ = techniques_.equiangular.begin(wave_, active_) ? Stage::look_beside : Stage::arrive;
+        nodes_met_ += techniques_.equiangular.take_nodes();
+        break;
+      case Stage::look_beside:
+        if (wave_.space.sight().next(request)) return true;
+        techniques_.equiangular.answer(wave_);
+        stage_ = Stage::arrive;
+        break;
       case Stage::arrive:
         if constexpr (Space::kFills) fly();
         arrive();
@@ -100,8 +107,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::next(TraceRequest& req
     }
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::request_hits(TraceRequest& request) {
+template <class Wave>
+void PathKernel<Wave>::request_hits(TraceRequest& request) {
   const size_t n = active_.size();
   for (size_t i = 0; i < n; ++i) {
     const Path& path = wave_.paths[active_[i]];
@@ -111,8 +118,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::request_hits(TraceRequ
 }
 
 // Whether anything but what fills space shines at a path that leaves the scene.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meets_outside(const Path& path) const {
+template <class Wave>
+bool PathKernel<Wave>::meets_outside(const Path& path) const {
   return std::any_of(wave_.lights.outside.begin(), wave_.lights.outside.end(), [&](const SampledLight& light) {
     return light.light->met_outside(path.direction, path.time).has_value();
   });
@@ -120,8 +127,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meets_outside(const Pa
 
 // Flies every path to its next event, then weakens its light. Nothing may change a throughput before the contributions
 // that were made with it have been handed over.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly() {
+template <class Wave>
+void PathKernel<Wave>::fly() {
   if (first_stage_) wave_.space.begin_wave();
   for (size_t i = 0; i < active_.size(); ++i) fly_one(i);
   wave_.hand_over();
@@ -130,8 +137,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly() {
     if (flights_[i].weakened) wave_.throughputs.attenuate(active_[i], flights_[i].through);
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
+template <class Wave>
+void PathKernel<Wave>::fly_one(size_t slot) {
   const uint32_t p = active_[slot];
   Path& path = wave_.paths[p];
   Hit& hit = wave_.hits[slot];

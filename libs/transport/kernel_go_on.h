@@ -1,5 +1,6 @@
 // Definitions of kernel.h: continuations, roulette, and how paths end.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -8,12 +9,12 @@
 
 namespace suite {
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-TraceStatistics PathKernel<Surfaces, Space, Throughputs, Estimator>::take_statistics() {
+template <class Wave>
+TraceStatistics PathKernel<Wave>::take_statistics() {
   TraceStatistics all = wave_.space.take_statistics();
   const TraceStatistics touching = std::exchange(wave_.touching, {});
   all.rays += touching.rays, all.cycles += touching.cycles;
-  if constexpr (Techniques<Paths>::kModels)
+  if constexpr (Techniques<Wave>::kModels)
     if (techniques_.manifold.on()) {
       const TraceStatistics ways = techniques_.manifold.sight().take_statistics();
       all.rays += ways.rays, all.cycles += ways.cycles;
@@ -22,32 +23,34 @@ TraceStatistics PathKernel<Surfaces, Space, Throughputs, Estimator>::take_statis
 }
 
 // Draws where all paths of the stage go on.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on() {
+template <class Wave>
+void PathKernel<Wave>::go_on() {
   for (size_t i = 0; i < wave_.nodes.size(); ++i) {
     const auto& u = wave_.paths[wave_.nodes[i].path].u;
     wave_.surfaces.prepare(i, {u[0], u[1]});
   }
   wave_.surfaces.prepare_all(wave_.nodes.size());
   if (Space::kGoesBack || techniques_.splitting.on()) in_stage_ = active_;
-  active_.assign(onward_.begin(), onward_.end());
+  active_.resize(onward_.size() + wave_.nodes.size());
+  size_t n = std::copy(onward_.begin(), onward_.end(), active_.begin()) - active_.begin();
   for (size_t i = 0; i < wave_.nodes.size(); ++i)
-    if (go_on(i)) active_.push_back(wave_.nodes[i].path);
+    if (go_on(i)) active_[n++] = wave_.nodes[i].path;
+  active_.resize(n);
   techniques_.residual.go_back(wave_, in_stage_, active_);
   if (techniques_.splitting.on()) techniques_.splitting.take_up_ended(wave_, in_stage_, active_);
 }
 
 // One path; false when it ends here.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
+template <class Wave>
+bool PathKernel<Wave>::go_on(size_t i) {
   wave_.records[wave_.nodes[i].path].end = PathEnd::absorbed;
   if (techniques_.splitting.on()) branch(i);
   Continuation on;
   return draw(i, on) && go_on(i, on);
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const Continuation& on) {
+template <class Wave>
+bool PathKernel<Wave>::go_on(size_t i, const Continuation& on) {
   const uint32_t p = wave_.nodes[i].path;
   Path& path = wave_.paths[p];
   const double own = on.density[path.knot];
@@ -62,7 +65,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const 
   path.last_density = on.dirac ? 0 : own;
   const bool medium = wave_.nodes[i].event;
   Event event{-path.direction, on.in, medium ? kNone : wave_.surfaces.material(p), medium, on.dirac};
-  if constexpr (Paths::kStokes) event.polarised = wave_.polarise(wave_.nodes[i], on.in, on.dirac ? &on : nullptr);
+  if constexpr (Wave::kStokes) event.polarised = wave_.polarise(wave_.nodes[i], on.in, on.dirac ? &on : nullptr);
   wave_.throughputs.turn(p, event);
   wave_.throughputs.scatter(p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum},
                             event);
@@ -72,8 +75,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const 
 }
 
 // The branches of a node that are kept.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::branch(size_t i) {
+template <class Wave>
+void PathKernel<Wave>::branch(size_t i) {
   if constexpr (Space::kMedia) {
     const PathNode& node = wave_.nodes[i];
     const auto on_by = [&](size_t j, const Continuation& on) { return go_on(j, on); };
@@ -84,9 +87,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::branch(size_t i) {
 }
 
 // Brings r_k and the throughputs at the knots behind the event, divided by A; returns A.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, const Continuation& on, double own,
-                                                                  double& brightest) {
+template <class Wave>
+double PathKernel<Wave>::weigh(uint32_t p, const Continuation& on, double own, double& brightest) {
   Path& path = wave_.paths[p];
   for (size_t k = 0; k < wave_.knots(); ++k) {
     const float w = on.weight.spectrum ? on.weight.spectrum[wave_.heroes.bins[k]] : 1;
@@ -111,16 +113,16 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, co
 }
 
 // A path that cannot go on because a model gave what is no number: its sample is rejected and counted.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::fail(uint32_t p) {
+template <class Wave>
+bool PathKernel<Wave>::fail(uint32_t p) {
   wave_.contribution(p, kFromMatter).scale = std::numeric_limits<float>::quiet_NaN();
   wave_.contribute();
   wave_.hand_over();
   return false;
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continuation& on) {
+template <class Wave>
+bool PathKernel<Wave>::draw(size_t i, Continuation& on) {
   const PathNode& node = wave_.nodes[i];
   constexpr bool kDraws = Surfaces::kDense > 0 || Space::kScatters;
   const std::span<float> memory = kDraws ? wave_.dense(node.path) : std::span<float>{};
@@ -133,8 +135,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continu
   return true;
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::span<float> memory, Continuation& on) {
+template <class Wave>
+bool PathKernel<Wave>::draw(size_t i, std::span<float> memory, Continuation& on) {
   const PathNode& node = wave_.nodes[i];
   const Path& path = wave_.paths[node.path];
   const Vec2 u{path.u[0], path.u[1]};
@@ -168,8 +170,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
 // How much more of its light a path is worth to roulette that comes to a smooth surface from within water: most leave
 // there, with the light of a sky that nobody asks for through the surface, and end; to end them first saves next to
 // nothing. A value of 6 takes 0.5 to 0.7 of the work to an error in the bay of sample_scenes, coastal to red.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, const Continuation& on) const {
+template <class Wave>
+double PathKernel<Wave>::ahead(size_t i, const Continuation& on) const {
   if constexpr (Space::kMedia) {
     constexpr double kLeaves = 6, kClaimed = 0.1;
     const double index = wave_.space.index(wave_.nodes[i].path);
@@ -181,8 +183,8 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, cons
 }
 
 // The probability with which the path has survived; 0 when roulette ends it.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p, double brightest) {
+template <class Wave>
+double PathKernel<Wave>::survives(uint32_t p, double brightest) {
   Path& path = wave_.paths[p];
   const double alive = Estimator::survival(brightest, path.order(), wave_.options.roulette_after);
   if (alive == 1) return 1;
@@ -196,8 +198,8 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p,
 
 // Whether the path has as many nodes as it may have. Of two branches to the next scattering the open one would bring
 // all light by itself.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(size_t i, const Continuation& on) {
+template <class Wave>
+bool PathKernel<Wave>::cut(size_t i, const Continuation& on) {
   const bool event = wave_.nodes[i].event;
   const uint32_t p = wave_.nodes[i].path;
   const Path& path = wave_.paths[p];
@@ -210,8 +212,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(size_t i, const Co
   return true;
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const Continuation& on) {
+template <class Wave>
+bool PathKernel<Wave>::leave(size_t i, const Continuation& on) {
   const PathNode& node = wave_.nodes[i];
   const uint32_t p = node.path;
   Path& path = wave_.paths[p];
@@ -238,8 +240,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
 }
 
 // The claims on the light that the path may meet behind the node.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::leave_claims(const PathNode& node, const Continuation& on) {
+template <class Wave>
+void PathKernel<Wave>::leave_claims(const PathNode& node, const Continuation& on) {
   constexpr Claim kManifold = Claim::manifold(RefractedWay::kMostEvents);
   PathClaims& claims = wave_.paths[node.path].claims;
   const NodeClaims* const made = techniques_.chains.claims(wave_, node);

@@ -1,4 +1,4 @@
-// Definitions of kernel.h: next-event estimation (NEE): light samples, shadow rays, handing over of contributions.
+// Definitions of kernel.h: next-event estimation (NEE): light samples, shadow rays, contributions.
 #pragma once
 #include <limits>
 
@@ -6,8 +6,8 @@
 
 namespace suite {
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::sample_lights() {
+template <class Wave>
+void PathKernel<Wave>::sample_lights() {
   wave_.sight_rays.clear(), wave_.space.clear_sight();
   techniques_.manifold.begin();
   wave_.sight_rays.first = first_stage_;
@@ -31,9 +31,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::sample_lights() {
   wave_.space.sight().begin(wave_.sight_rays);
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::connect(const PathNode& node, const SampledLight& light,
-                                                                  const LightSample& sample, int draws, double asks) {
+template <class Wave>
+void PathKernel<Wave>::connect(const PathNode& node, const SampledLight& light, const LightSample& sample, int draws,
+                               double asks) {
   const uint32_t p = node.path;
   const Path& path = wave_.paths[p];
   const Hit& hit = wave_.hits[node.slot];
@@ -75,8 +75,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::connect(const PathNode
   wave_.sight_rays.add(distance, !light.nature.wide).set(origin, direction, path.time, path.draw);
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::resolve() {
+template <class Wave>
+void PathKernel<Wave>::resolve() {
   techniques_.manifold.answer(wave_, techniques_.chains, techniques_.guide);
   const std::span<const uint8_t> blocked = wave_.sight_rays.blocked();
   for (size_t i = 0; i < blocked.size(); ++i) {
@@ -98,9 +98,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::resolve() {
   }
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const PathNode& node, Dir in,
-                                                                   std::span<const double> reach) const {
+// Density with which continuations are drawn towards `in` and get as far as the light, over all hero wavelengths.
+template <class Wave>
+double PathKernel<Wave>::chance(const PathNode& node, Dir in, std::span<const double> reach) const {
   const Path& path = wave_.paths[node.path];
   float density[kMaxKnots] = {};
   if constexpr (Space::kScatters)
@@ -113,8 +113,25 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const PathNod
   return path.relative.mean(wave_.P(), density, reach);
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::lack(const Question& q, size_t i, bool blocked) {
+// The spectrum of a sample whose shape changes with direction, in memory of its path.
+template <class Wave>
+const float* PathKernel<Wave>::spectrum_of(const Question& q, size_t i) {
+  const uint32_t p = wave_.nodes[q.node].path;
+  const Ray& ray = wave_.sight_rays.rays()[i];
+  const std::span<float> own = wave_.dense(p);
+  if (q.light == kFromAir) {
+    const float* const radiance = wave_.space.sky_radiance(ray, wave_.transmission, own);
+    if (radiance != own.data()) wave_.throughputs.give_back(p);
+    return radiance;
+  }
+  std::fill(own.begin(), own.end(), 0.0f);
+  wave_.environment.lights[q.light]->add(q.direction, ray.time, 1, own);
+  return own.data();
+}
+
+// A beam that the air has been given comes to a place in it in part, or not at all.
+template <class Wave>
+void PathKernel<Wave>::lack(const Question& q, size_t i, bool blocked) {
   const PathNode& node = wave_.nodes[q.node];
   if (!wave_.space.lacks(wave_.sight_rays.rays()[i], wave_.sight_rays.distance()[i], i, blocked, wave_.transmission))
     return;
@@ -131,8 +148,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::lack(const Question& q
   wave_.contribute();
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& q, size_t i, double passes) {
+// A light sample arrives; or passes < 1 of it would, had smooth surfaces not bent it.
+template <class Wave>
+void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
   const PathNode& node = wave_.nodes[q.node];
   const uint32_t p = node.path;
   const bool arrives = !wave_.sight_rays.blocked()[i];
@@ -170,7 +188,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
     if (c.water == WaterSeen::mirrored && distance < std::numeric_limits<double>::infinity())
       c.water = WaterSeen::other;
   }
-  c.scale = static_cast<float>(passes * q.scale / denominator * techniques_.side.beside(wave_, node, q.light));
+  const bool point = arrives && !(q.density > 0) && distance < std::numeric_limits<double>::infinity();
+  c.scale = static_cast<float>(passes * q.scale / denominator * techniques_.side.beside(wave_, node, q.light) *
+                               techniques_.equiangular.beside(wave_, node, q.light, point));
   c.factor = factor;
   c.radiance = radiance;
   c.missed = static_cast<float>(missed);
@@ -179,9 +199,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
     const double off = node.event ? 0 : step_along(wave_.hits[node.slot], q.direction);
     c.arrival += wave_.space.optical_way(p, i, distance + off);
   }
-  if constexpr (Paths::kStokes) c.polarised = wave_.polarise(node, q.direction);
+  if constexpr (Wave::kStokes) c.polarised = wave_.polarise(node, q.direction);
   wave_.contribute();
-  if constexpr (Paths::kStokes) wave_.hand_over();  // the next light has other matrices
+  if constexpr (Wave::kStokes) wave_.hand_over();  // the next light has other matrices
 }
 
 }  // namespace suite

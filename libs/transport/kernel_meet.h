@@ -10,8 +10,8 @@
 namespace suite {
 
 // Sorts paths by what they have come to.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::arrive() {
+template <class Wave>
+void PathKernel<Wave>::arrive() {
   wave_.nodes.clear(), onward_.clear();
   for (uint32_t i = 0; i < active_.size(); ++i) {
     const uint32_t p = active_[i];
@@ -43,8 +43,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::arrive() {
 }
 
 // A path meets a surface. False when nothing scatters there.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint32_t slot) {
+template <class Wave>
+bool PathKernel<Wave>::meet(uint32_t p, uint32_t slot) {
   Path& path = wave_.paths[p];
   Hit& hit = wave_.hits[slot];
   if constexpr (Surfaces::kDense > 0)
@@ -59,8 +59,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint3
   return scatters;
 }
 
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::enter_node(uint32_t p, const Hit& hit, bool first) {
+template <class Wave>
+void PathKernel<Wave>::enter_node(uint32_t p, const Hit& hit, bool first) {
   Path& path = wave_.paths[p];
   ++path.surfaces;
   if (!first || !keep_first_) return;
@@ -69,8 +69,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::enter_node(uint32_t p,
 }
 
 // A path that missed the scene meets the Earth under it, if there is one; false when the path ends.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p, uint32_t slot) {
+template <class Wave>
+bool PathKernel<Wave>::meet_earth(uint32_t p, uint32_t slot) {
   Path& path = wave_.paths[p];
   const auto met = wave_.environment.earth ? wave_.environment.earth->meet(path.origin, path.direction,
                                                                            std::numeric_limits<double>::infinity())
@@ -96,8 +96,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p,
 }
 
 // The first node of a path that starts at a receiver.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::receive(uint32_t p) {
+template <class Wave>
+void PathKernel<Wave>::receive(uint32_t p) {
   if constexpr (requires(Surfaces & s) { s.receive(p, wave_.hits[0], receivers_[p]); }) {
     Path& path = wave_.paths[p];
     const auto slot = static_cast<uint32_t>(active_.size());
@@ -115,8 +115,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::receive(uint32_t p) {
 }
 
 // What a path meets outside the scene. in_field: but for beams, which the field of the air has.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p, bool in_field) {
+template <class Wave>
+void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
   const Path& path = wave_.paths[p];
   wave_.records[p].end = PathEnd::escaped;
   wave_.records[p].escape = path.direction;
@@ -146,8 +146,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p, boo
 }
 
 // A surface met by chance may shine; what an explicit sample of it brings is shared with it.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, const Hit& hit) {
+template <class Wave>
+void PathKernel<Wave>::meet_glow(uint32_t p, const Hit& hit) {
   const Path& path = wave_.paths[p];
   const LastAsked& last = wave_.last[p];
   const bool shared = path.order() > 1 && wave_.options.explicit_sources && path.last_density > 0;
@@ -174,8 +174,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, 
 }
 
 // Warm surfaces.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::emit(uint32_t p) {
+template <class Wave>
+void PathKernel<Wave>::emit(uint32_t p) {
   if constexpr (Surfaces::kDense > 0) {
     if (!wave_.surfaces.warm(p)) return;
     const std::span<float> memory = wave_.dense(p);
@@ -185,9 +185,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::emit(uint32_t p) {
     c.order -= 1;  // not scattered by what emits
     c.factor = emission.emissivity;
     c.radiance = emission.radiance;
-    if constexpr (Paths::kStokes) c.polarised = wave_.polarise_emission(p);
+    if constexpr (Wave::kStokes) c.polarised = wave_.polarise_emission(p);
     wave_.contribute();
-    if constexpr (Paths::kStokes) wave_.hand_over();
+    if constexpr (Wave::kStokes) wave_.hand_over();
   }
 }
 

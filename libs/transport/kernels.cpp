@@ -57,7 +57,8 @@ namespace {
 template <class Surfaces, class Space, class Estimator>
 std::unique_ptr<PathTracing> make(const KernelContext& c, size_t width, SpectralThroughputs& throughputs,
                                   Sink<SpectralThroughputs>& sink) {
-  return std::make_unique<PathKernel<Surfaces, Space, SpectralThroughputs, Estimator>>(c, width, throughputs, sink);
+  return std::make_unique<PathKernel<Wave<Surfaces, Space, SpectralThroughputs, Estimator>>>(c, width, throughputs,
+                                                                                             sink);
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ namespace suite {
 std::unique_ptr<PathTracing> make_stokes_kernel(const KernelChoice& choice, const KernelContext& c, size_t width,
                                                 StokesThroughputs& throughputs, Sink<StokesThroughputs>& sink) {
   if (choice.space == KernelChoice::Space::field)
-    return std::make_unique<PathKernel<AnySurfaces, FieldSpace, StokesThroughputs, StandardEstimator>>(
+    return std::make_unique<PathKernel<Wave<AnySurfaces, FieldSpace, StokesThroughputs, StandardEstimator>>>(
         c, width, throughputs, sink);
   SUITE_CHECK(choice.space == KernelChoice::Space::nothing);
-  return std::make_unique<PathKernel<AnySurfaces, NothingSpace, StokesThroughputs, StandardEstimator>>(
+  return std::make_unique<PathKernel<Wave<AnySurfaces, NothingSpace, StokesThroughputs, StandardEstimator>>>(
       c, width, throughputs, sink);
 }
 

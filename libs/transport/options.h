@@ -33,6 +33,7 @@ struct PipelineOptions {
   bool volume_chains = true;      // and along chains of scatterings (techniques/volume_chains.h; off for comparisons)
   bool side_flights =
       true;  // flights aside in media that scatter forwards (techniques/side_vertex.h; off for comparisons)
+  bool equiangular = true;  // vertices near lamps in media (techniques/equiangular.h; off for comparisons)
   // Photons that look for light which glossy surfaces throw (gloss_photons.h); 0: none, and nobody is guided there.
   uint32_t gloss_photons = 32768;
   Method method = Method::standard;
@@ -51,7 +52,7 @@ inline bool goes_back(const PipelineOptions& options) {
 
 // What is left of them where paths carry polarisation: techniques that tell their matrices.
 inline PipelineOptions for_stokes(PipelineOptions options) {
-  options.refracted_sources = options.volume_chains = false;
+  options.refracted_sources = options.volume_chains = options.equiangular = false;
   return options;
 }
 

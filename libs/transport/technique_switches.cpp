@@ -8,6 +8,7 @@ std::span<const TechniqueSwitch> technique_switches() {
       {"manifold", [](PipelineOptions& o) { o.refracted_sources = false; }},
       {"volume_chains", [](PipelineOptions& o) { o.volume_chains = false; }},
       {"side_vertex", [](PipelineOptions& o) { o.side_flights = false; }},
+      {"equiangular", [](PipelineOptions& o) { o.equiangular = false; }},
       {"caustic_guide", [](PipelineOptions& o) { o.gloss_photons = 0; }},
   };
   return kAll;

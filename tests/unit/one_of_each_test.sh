@@ -23,8 +23,8 @@ places() {
 places "roulette"            1 'std::clamp\(brightness / kCarries, kLeast, 1\.0\)' libs
 places "roulette's number"   1 'dimensions::roulette\(' libs
 places "shared density"      1 'other \* \(other / own\)' libs
-# The others: side flights, which end where they ask (techniques/side_vertex.h), and photons that count nothing themselves.
-places "questions to lights" 3 '(light|light->)(\.light)?->sample\(' libs/transport
+# The others: vertices that end where they sample (techniques/side_vertex.h, techniques/equiangular.h), and photons that count nothing themselves.
+places "questions to lights" 4 '(light|light->)(\.light)?->sample\(' libs/transport
 places "lights met outside"  2 '(\.|->)met_outside\(' libs/transport
 places "surfaces that shine" 2 '(\.|->)met_surface\(' libs/transport
 # The second one: side flights, which end where they ask (techniques/side_vertex.h).

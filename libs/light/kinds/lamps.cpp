@@ -1,47 +1,11 @@
-#include "light/kinds/lamps.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
-#include "light/kinds/lamp_carriers.h"
-#include "light/kinds/lamp_images.h"
 #include "light/kinds/lamp_intensity.h"
-#include "light/kinds/lamp_shapes.h"
+#include "light/kinds/lamps_core.h"
 
 namespace suite {
-
-struct Lamps::Core {
-  std::vector<LampSpec> specs;
-  std::vector<Frame> frames;                // of the specs
-  std::vector<std::vector<float>> spectra;  // of the specs
-  std::vector<LampShape> shapes;            // as numbered in the tree
-  std::unique_ptr<LightTree> tree;
-  // Per object: the shapes of its triangles, kNone = does not glow or is not in the tree; one entry for exact surfaces.
-  std::unordered_map<uint32_t, std::vector<uint32_t>> shape_of_triangle;
-  std::vector<const float*> front, back;  // per material
-  std::vector<uint32_t> spec_of_material;
-  // Of a scene that repeats itself. Copies of an object at the sides of the cell are images of the first one.
-  std::optional<Periodic> cell;
-  std::unique_ptr<LampImages> images;
-  std::unordered_map<uint32_t, std::pair<uint32_t, Vec3>> copy_of;  // per object: the first one, and the way to it
-  LampCarriers carriers;                                            // of lamps that ride
-  std::optional<TimeSpan> window;  // of the tracer: what is dark all through it is in no tree
-
-  // While the lamps are gathered.
-  std::vector<LightBounds> bounds;
-  std::vector<LightProfile> profiles;
-
-  explicit Core(const Tracer& tracer) : carriers(tracer.scene()), window(tracer.window()) {}
-  void add_points(uint32_t spec, const Tracer& tracer);
-  void add_riding(uint32_t spec, LampShape shape, const LightBounds& still, const Tracer& tracer);
-  void add_material(uint32_t spec, const Scene& scene);
-  void add_surfaces(const Tracer& tracer);
-  uint32_t add(const LampShape& shape, LightBounds b);
-  uint32_t shape_at(const Hit& hit) const;
-  uint32_t add_surface(std::optional<LampShape> shape, uint32_t spec, const Hit& middle, const Tracer& tracer);
-};
 
 namespace {
 
@@ -352,29 +316,6 @@ std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability,
   const double step = Tracer::arrive(double{s.step}, double{s.span}, r.distance);
   r.end = point->position + point->normal * (point->cosine > 0 ? step : -step);
   return r;
-}
-
-// By the tree as if the place looked everywhere, or any: bent light may come from where the tree expects none.
-std::optional<LightPlace> Lamps::draw_place(const LightReceiver& at, const std::array<double, 4>& u,
-                                            double time) const {
-  if (!core_->tree || core_->images) return std::nullopt;
-  const LightReceiver all_round{at.position, {}, true};
-  const double evenly = 0.5 / static_cast<double>(size());
-  uint32_t lamp = 0;
-  if (u[0] < 0.5) {
-    const auto chosen = core_->tree->sample(all_round, 2 * u[0]);
-    if (!chosen) return std::nullopt;
-    lamp = chosen->light;
-  } else {
-    lamp = static_cast<uint32_t>(std::min(size() - 1, static_cast<size_t>((u[0] - 0.5) / evenly)));
-  }
-  const LampShape& s = core_->shapes[lamp];
-  if (!(dimming(core_->specs[s.spec], time) > 0)) return std::nullopt;
-  const double chance = 0.5 * core_->tree->probability(all_round, lamp) + evenly;
-  if (s.kind != Kind::point) return LightPlace{place_on(s, {u[1], u[2]}), false, chance / s.area, lamp};
-  if (s.carrier == kNone) return LightPlace{s.origin, true, chance, lamp};
-  const auto carrier = core_->carriers.at(s.carrier, time);
-  return carrier ? std::optional(LightPlace{carrier->point(s.origin), true, chance, lamp}) : std::nullopt;
 }
 
 bool Lamps::draws(const Hit& hit) const { return core_->shape_at(hit) != kNone; }

@@ -63,6 +63,8 @@ class Lamps final : public Light {
   std::optional<LightMet> met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,
                                       double distance, double cosine, double time) const override;
   size_t members() const override { return size(); }
+  bool is_point(size_t member) const override;
+  std::optional<Vec3> point_of(size_t member, double time) const override;
   std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
                                            const std::array<double, 4>& u, double time) const override;
 

@@ -66,6 +66,10 @@ class FieldSpace {
   // Whether it is a medium that is the same everywhere, and so are all that boundaries part from it.
   bool even_around(uint32_t p) const { return scatters_around(p) && !field_.has_grids() && !optics_.air(); }
 
+  // The same of a path that leaves an event or a surface, not a boundary on its way. And 1/m of scattering there.
+  bool starts_in_even_matter(uint32_t p) const { return !(ways_[p].gap > 0) && even_around(p); }
+  double scattering_around(uint32_t p, size_t knot) const { return scattering_in(stacks_[p].medium(ambient_), knot); }
+
   // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
   void stand(uint32_t p) { stand(events_[p], stacks_[p]); }
   // The event that ended the last flight of path p, or that of stand(). scattering: 1/m, at a knot.
@@ -97,6 +101,7 @@ class FieldSpace {
     MediumStack& stack = sight_.add(stacks_[p]);
     if (!hit.hit()) bodies_.leave_scene(stack);
   }
+  void see_from_way() { sight_.add(way_); }  // from where a way has come to
   void see_from_surface(uint32_t p, const Hit& hit, uint32_t material, Dir out, Dir in);
   Sight& sight() { return sight_; }
   bool dims(const Ray& ray, double distance, size_t i, std::span<float> transmission, std::span<double> reach);

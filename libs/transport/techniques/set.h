@@ -5,6 +5,7 @@
 
 #include "transport/techniques/air_residual.h"
 #include "transport/techniques/caustic_guide.h"
+#include "transport/techniques/equiangular.h"
 #include "transport/techniques/forward_guide.h"
 #include "transport/techniques/manifold.h"
 #include "transport/techniques/side_vertex.h"
@@ -23,6 +24,7 @@ struct Techniques {
   std::conditional_t<kMedia, ForwardGuide<Wave>, NoForwardGuide<Wave>> guide;
   std::conditional_t<kMedia, Splitting<Wave>, NoSplitting<Wave>> splitting;
   std::conditional_t<kMedia, SideVertex<Wave>, NoSideVertex<Wave>> side;
+  std::conditional_t<kMedia, Equiangular<Wave>, NoEquiangular<Wave>> equiangular;
   std::conditional_t<kModels, CausticGuide<Wave>, NoCausticGuide<Wave>> caustics;
   std::conditional_t<kBack, AirResidual<Wave>, NoAirResidual<Wave>> residual;
 
@@ -32,6 +34,7 @@ struct Techniques {
     chains.prepare(wave, splitting.on());
     guide.prepare(splitting.on());
     if (context.branches) side.prepare(wave, manifold.on());
+    if (context.branches) equiangular.prepare(wave);
     caustics.prepare(context, kMedia && manifold.on());
     residual.prepare(wave);
   }

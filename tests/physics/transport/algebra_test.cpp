@@ -107,8 +107,8 @@ TEST(Algebra, ThroughputsAreMultipliedInTheOrderOfThePath) {
   const PipelineOptions options;
   Matrices algebra;
   Record sink;
-  PathKernel<AnySurfaces, AirSpace, Matrices, StandardEstimator> kernel({surface, optics, environment, options}, 1,
-                                                                        algebra, sink);
+  PathKernel<Wave<AnySurfaces, AirSpace, Matrices, StandardEstimator>> kernel({surface, optics, environment, options},
+                                                                              1, algebra, sink);
   const Dir down = normalized(Vec3{0.5, 0, -1}), up = normalized(Vec3{0.5, 0, 1});
   kernel.start(0, {{{0, 0, 0.5}, down, 0}, 1}, SampleStream(1, 0, 0), 0);
   const FlushDenormals flush;

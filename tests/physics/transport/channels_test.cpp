@@ -88,7 +88,7 @@ TEST(Channels, MayBeSigned) {
     constexpr uint32_t width = 64, waves = 256;
     RadianceSink sink(width, 1, ChannelPlan({&channel_rows().find("radiance"), &with_sign}), false);
     SpectralThroughputs throughputs(width, optics.state().size(), sink.targets());
-    PathKernel<AnySurfaces, NothingSpace, SpectralThroughputs, StandardEstimator> kernel(
+    PathKernel<Wave<AnySurfaces, NothingSpace, SpectralThroughputs, StandardEstimator>> kernel(
         {surface, optics, environment, options}, width, throughputs, sink);
     const FlushDenormals flush;
     TraceStatistics statistics;

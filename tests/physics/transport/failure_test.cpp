@@ -53,7 +53,7 @@ Outcome run(size_t bands) {
   constexpr uint32_t width = 64;
   RadianceSink sink(width, 1, ChannelPlan(default_channels()), false);
   SpectralThroughputs throughputs(width, optics.state().size(), sink.targets());
-  PathKernel<Broken<wrong>, NothingSpace, SpectralThroughputs, StandardEstimator> kernel(
+  PathKernel<Wave<Broken<wrong>, NothingSpace, SpectralThroughputs, StandardEstimator>> kernel(
       {surface, optics, environment, options}, width, throughputs, sink);
   const FlushDenormals flush;
   TraceStatistics statistics;
