@@ -92,8 +92,9 @@ std::string explain(const std::string& feature) {
 }
 
 // Chooses the bins of a sensor's states and says what they are good for.
-void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources, BandBiases& biases) {
-  const std::vector<BinReport> reports = choose_bins(scene, sources, sensor);
+void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources, BandBiases& biases,
+                    FoundHeat heat = {}) {
+  const std::vector<BinReport> reports = choose_bins(scene, sources, sensor, heat);
   add_biases(reports, biases);
   for (const BinReport& r : reports) {
     note(r.text());
@@ -239,6 +240,28 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   }
 }
 
+// States as the text asks for them, before bins are chosen.
+using AskedStates = std::vector<std::vector<SpectralState>>;
+
+AskedStates states_of(const Simulation& sim) {
+  AskedStates asked;
+  for (const auto& sensor : sim.sensors) asked.emplace_back(sensor->states().begin(), sensor->states().end());
+  return asked;
+}
+
+// Bins were chosen before temperatures were found: once more where some are hotter than was assumed.
+void follow_heat(Simulation& sim, const Scene& scene, JobOptions& options, const AskedStates& asked) {
+  const FoundHeat heat{options.heating.field ? options.heating.field->range()[1] : 0};
+  if (!(heat.hottest > kSimulatedBelow)) return;
+  note(strf("surfaces are as hot as %.0f K: bins, chosen for at most %g K, are chosen anew", heat.hottest,
+            kSimulatedBelow));
+  const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
+  for (size_t s = 0; s < sim.sensors.size(); ++s) {
+    for (size_t state = 0; state < asked[s].size(); ++state) sim.sensors[s]->take_state(state, asked[s][state]);
+    choose_bins_of(*sim.sensors[s], scene, standing, options.biases, heat);
+  }
+}
+
 // As check_sensors(); all is told with a place.
 void check_job(Simulation& sim, const Scene& scene, JobOptions& options) {
   try {
@@ -357,6 +380,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   lidars.check(scene);
   if (sim.sensors.empty()) return lidars.run_alone(scene, options);
+  const AskedStates asked = states_of(sim);
   check_job(sim, *scene, options);
   const bool part = options.share && options.share->runs();
   if (o.dry_run) dry_run(scene, sim, options, o), lidars.forecast();
@@ -366,6 +390,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   const RunLock lock = forecast.empty() && (!ranks || ranks->leads()) ? lock_place(o, sim) : RunLock();
   find_beforehand(scene, sim, options, o, facts, ranks);
   if (o.heat_only) return 0;
+  follow_heat(sim, *scene, options, asked);
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);

@@ -1,4 +1,7 @@
 // What a job will run and take, before it begins.
+#include <algorithm>
+
+#include "scheduler/forecast.h"
 #include "scheduler/items.h"
 #include "scheduler/scheduler.h"
 
@@ -36,6 +39,17 @@ double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
                    }
                });
   return sum;
+}
+
+bool paths_are_fixed(Sensors sensors, const JobOptions& options) {
+  bool fixed = true;
+  for_captures(sensors, options,
+               [&](const Sensor& s, const Capture& c, const Budget& budget, const std::vector<uint8_t>&) {
+                 const Goals goals = goals_of(s, c, budget);
+                 fixed = fixed && !(goals.all.relative_error > 0) &&
+                         std::ranges::none_of(goals.own, [](const Convergence& g) { return g.relative_error > 0; });
+               });
+  return fixed;
 }
 
 double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {

@@ -51,7 +51,7 @@ TEST(Influence, WhatIsSeenStaysWithinTheBound) {
   for (auto* light : {&night.direct, &night.diffuse, &night.global}) std::fill(light->begin(), light->end(), 0.0);
 
   const ExchangePaths exchange = kit.exchange(path_options(spec));
-  const Influence influence(exchange, *kit.faces);
+  const Influence influence(exchange, *kit.faces, 450);
   std::vector<bool> seen;
   for (size_t e = 0; e < kit.elements->size(); ++e) seen.push_back((*kit.elements)[e].material == 0);
   const auto [cold, warm] = std::ranges::minmax(night.air_kelvin);
@@ -110,7 +110,7 @@ TEST(Influence, WhatIsSeenIsKept) {
   HeatSpec spec;
   spec.paths = 1024;
   const ExchangePaths exchange = kit.exchange(path_options(spec));
-  const Influence influence(exchange, *kit.faces);
+  const Influence influence(exchange, *kit.faces, 450);
   std::vector<bool> seen, others;
   for (size_t e = 0; e < kit.elements->size(); ++e) {
     seen.push_back((*kit.elements)[e].material == plate);
@@ -124,7 +124,7 @@ TEST(Influence, WhatIsSeenIsKept) {
     for (size_t e = 0; e < seen.size(); ++e) EXPECT_TRUE(kept[e] || !seen[e]) << e << " for " << limit << " K";
   }
   const Influence::Range near{std::vector<double>(exchange.faces(), 290), std::vector<double>(exchange.faces(), 290)};
-  EXPECT_EQ(influence.off_at_most(seen, others, near, {290, 290}), Influence::kHottest);
+  EXPECT_EQ(influence.off_at_most(seen, others, near, {290, 290}), 450);
 }
 
 }  // namespace
