@@ -24,7 +24,6 @@
 #include "heat_prepared.h"
 #include "heat_report.h"
 #include "scheduler/prepass.h"
-#include "spectral/planck.h"
 
 namespace suite {
 
@@ -94,7 +93,8 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
   if (bar) bar->finish();
   if (left_out) note("heat: " + left_out->sentence(found.result));
   if (left_out && left_out->bound(found.result) > sim.heat->leave_out)
-    emit({Dr::heat_left_out, strf("heat: that is more than the %g K of influence_cutoff_k", sim.heat->leave_out)});
+    emit({Dr::heat_left_out, strf("heat: elements that are left out matter by more than the %g K of influence_cutoff_k",
+                                  sim.heat->leave_out)});
   return found;
 }
 
@@ -237,22 +237,6 @@ bool asks_heat(const Scene& scene, const Simulation& sim, const RenderOptions& o
 // Faults of the search are those of `heat`, unless they have a place of their own.
 Error at_heat(const Error& fault, const Simulation& sim) {
   return placed(fault, sim.heat ? sim.heat->where : Where{sim.path, 0, 0, {}, -1});
-}
-
-// Where temperatures are not found: the scene has what may heat its neighbours until a sensor sees them glow.
-void report_hot_neighbours(const Scene& scene, const Simulation& sim) {
-  const double hottest = hottest_given(scene);
-  for (const auto& sensor : sim.sensors)
-    for (const SpectralState& state : sensor->states())
-      if (hottest > kWeatherBelow && sees_warmth(state, hottest)) {
-        emit({Dr::heat_limit,
-              strf("heat: sensor '%s': surfaces that wait for the balance of heat stay dark, as none of its bands sees "
-                   "what is as warm as %g K; the scene holds %.0f K, and what that heats may send out up to %.2g W/(m2 "
-                   "sr um) at %.3g um; temperatures are found with a band beyond 2 um or with `truth: [temperature]`",
-                   sensor->name().c_str(), kWeatherBelow, hottest, planck_radiance(state.high_um, hottest),
-                   state.high_um)});
-        break;
-      }
 }
 
 Heating heating(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,

@@ -130,10 +130,17 @@ std::string LeftOut::sentence(const HeatResult& h) const {
   const size_t all = kept_.size(), kept = count_of(kept_);
   if (kept == all)
     return strf("none of the %zu elements are left out: all matter to the %zu in view", all, count_of(seen_));
-  return strf(
-      "%zu of %zu elements are left out, %zu are in view and within %.2g K of what they were with all of them, along "
-      "the same paths, if nothing is warmer than %g K",
-      all - kept, all, count_of(seen_), bound(h), influence_->hottest());
+  const double off = bound(h);
+  const std::string left = strf("%zu of %zu elements are left out, %zu are in view", all - kept, all, count_of(seen_));
+  if (off >= influence_->hottest())
+    return left + strf(
+                      ": how far they are from what they were with all of them has no bound here, if some of these "
+                      "are as warm as %.4g K",
+                      influence_->hottest());
+  return left + strf(
+                    " and within %.2g K of what they were with all of them, along the same paths, if nothing is "
+                    "warmer than %.4g K",
+                    off, influence_->hottest());
 }
 
 }  // namespace suite

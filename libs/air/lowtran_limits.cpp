@@ -13,7 +13,7 @@ std::vector<GasLimit> limits_of_lowtran(WaterOf continuum) {
       "carbon dioxide, water; measured without water: 1.7 K rms, 3 K at most; the rest is an allowance for "
       "water, not measured, nor are slanted paths"};
   if (continuum == WaterOf::mt_ckd)
-    return {{1.1, 1.35, {0.022, 0.092}, 0.004, {}, {}, "water, oxygen"},
+    return {{1.1, 1.35, {0.023, 0.092}, 0.005, {}, {}, "water, oxygen"},
             {2.0, 2.4, {0.034, 0.12}, -0.025, {}, {}, "water, methane"},
             {2.9, 3.4, {0.032, 0.095}, 0.01, {1.1, 2.7}, {1.5, 5.0}, "water"},
             {3.4,

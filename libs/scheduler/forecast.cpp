@@ -52,6 +52,13 @@ bool paths_are_fixed(Sensors sensors, const JobOptions& options) {
   return fixed;
 }
 
+std::unique_ptr<Progress> begin_progress(Sensors sensors, const JobOptions& options, double spent) {
+  TimeLeft::Bounds bounds;
+  if (!paths_are_fixed(sensors, options)) bounds.total = TimeLeft::Total::least;
+  if (options.budget.seconds > 0) bounds.seconds = options.budget.seconds - spent;
+  return std::make_unique<Progress>("rendering", forecast_paths(sensors, options), "path", bounds);
+}
+
 double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
   double most = 0;
   for_captures(sensors, options, [&](const Sensor& s, const Capture& c, const Budget& budget, const auto&) {

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
-#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "estimate/plan.h"
 #include "scheduler/forecast.h"
@@ -78,19 +77,11 @@ class Job {
     std::vector<SentRound> none;
     exchange(executor(), none, cap_);
     for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
-    if (options_.progress)
-      progress_ =
-          std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path", progress_bounds());
+    if (options_.progress) progress_ = begin_progress(sensors_, options_, seconds_since(start_));
     saving_.store = options_.store;
     if (!before.empty()) run_all(before, {.pending = true});
     report_.stopped = executor().any(report_.stopped);
     if (const std::vector<Item> some = of_share(seen); !some.empty() && !report_.stopped) run_all(some, heating());
-  }
-  TimeLeft::Bounds progress_bounds() const {
-    TimeLeft::Bounds bounds;
-    if (!paths_are_fixed(sensors_, options_)) bounds.total = TimeLeft::Total::least;
-    if (options_.budget.seconds > 0) bounds.seconds = options_.budget.seconds - seconds_since(start_);
-    return bounds;
   }
   // The captures of some sensors in the order in which they run, numbered from what is given.
   std::vector<Item> items_from(Sensors sensors, size_t sensor, size_t id) {
