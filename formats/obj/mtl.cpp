@@ -195,17 +195,24 @@ class Taker {
   const std::map<std::string, tinyobj::texture_option_t>& rules() const { return rules_; }
 
  private:
-  std::shared_ptr<const SourceTexture> texture(const tinyobj::material_t& m, const Library& library) {
-    const tinyobj::texture_option_t& o = m.diffuse_texopt;
-    for (size_t c = 0; c < 2; ++c)
-      if (!(std::fabs(o.scale[c]) < 1e6 && std::fabs(o.origin_offset[c]) < 1e6)) {
-        const auto place = library.places.find(m.name);
-        throw Error(place == library.places.end() ? Where{library.file, 0, 0, {}, -1} : place->second,
-                    "map_Kd of '" + printable(m.name).substr(0, 80) + "': -s or -o is no number, or beyond 1e6");
-      }
+  // Names have slashes of either kind.
+  std::string image_path(const tinyobj::material_t& m, const Where& place) const {
     std::string name = trimmed(m.diffuse_texname);
     std::ranges::replace(name, '\\', '/');
-    const std::string path = resolve_(name);
+    try {
+      return resolve_(name);
+    } catch (const Error& e) {
+      throw Error(place, e.message(), e.hint(), "SP003");
+    }
+  }
+  std::shared_ptr<const SourceTexture> texture(const tinyobj::material_t& m, const Library& library) {
+    const tinyobj::texture_option_t& o = m.diffuse_texopt;
+    const auto at = library.places.find(m.name);
+    const Where place = at == library.places.end() ? Where{library.file, 0, 0, {}, -1} : at->second;
+    for (size_t c = 0; c < 2; ++c)
+      if (!(std::fabs(o.scale[c]) < 1e6 && std::fabs(o.origin_offset[c]) < 1e6))
+        throw Error(place, "map_Kd of '" + printable(m.name).substr(0, 80) + "': -s or -o is no number, or beyond 1e6");
+    const std::string path = image_path(m, place);
     if (is_laid_out(o)) rules_[m.name] = o;
     changed_ += is_changed(o);
     auto& known = images_[{path, o.clamp}];

@@ -120,12 +120,13 @@ TEST(FuzzSim, NightSkyAndDetectors) {
       "detector: {kind: intensifier, quantum_efficiency: 0.4, gain_e: 300, gain_e_per_dn: 4, halo: {share: 0.03, "
       "radius_um: 500}, phosphor: {blur_um: 60}, background_lx: 2.0e-7}}\n"
       "  - {kind: frame_camera, name: p, columns: 4, rows: 3, pitch_um: 5, focal_length_mm: 9, position_m: [0, 0, 60], "
-      "look_at_m: [0, 0, 0], stokes: linear, analyser: {angle_deg: 30, extinction: 1000}, " +
+      "look_at_m: [0, 0, 0], stokes: linear, analyser: {polarizer_deg: 30, extinction: 1000}, " +
       kBands +
       "}\n  - {kind: lidar, name: als, position_m: [0, 0, 100], look_at_m: [10, 0, 0], laser: {wavelength_um: 1.064, "
-      "pulse_energy_j: 1.5e-4, rate_hz: 1000, beam: {kind: gaussian, divergence_mrad: 1}}, receiver: {aperture_mm: "
+      "pulse_energy_j: 1.5e-4, rate_hz: 1000, beam: {kind: gaussian, waist_mm: 2, m2: 2}}, receiver: {aperture_mm: "
       "150, "
-      "field_of_view_mrad: 2}, gate: {start_m: 9, stop_m: 110, bin_ns: 0.5}, tasks: [{start: 0, pulses: 5}]}\n";
+      "array: {columns: 4, rows: 2, pitch_um: 50, focal_length_mm: 400}}, gate: {start_m: 9, stop_m: 110, bin_ns: "
+      "0.5}, tasks: [{start: 0, pulses: 5}]}\n";
   const TempFolder folder;
   ASSERT_NO_THROW(read(folder, test::bytes_of(text)));  // what is damaged is whole at first
   test::fuzz(

@@ -221,7 +221,7 @@ TEST_F(ObjTextures, AreRefusedWhereTheyCannotBeRead) {
     return report_.text();
   };
   const std::string red = "newmtl red paint\nKd 0.6 0.1 0.1\n";
-  EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd none.png\n"), HasSubstr("its file 'none.png': no such file"));
+  EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd none.png\n"), HasSubstr("t.mtl:3:1: its file 'none.png': no such file"));
   EXPECT_THAT(told(red + "newmtl leaf\nKd 1 x\n"), HasSubstr("t.mtl:4:1: Kd of 'leaf' is no colour"));
   EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd -s 1e99 1 a leaf.png\n"),
               HasSubstr("t.mtl:3:1: map_Kd of 'leaf'"));
