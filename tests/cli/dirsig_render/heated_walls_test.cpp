@@ -35,7 +35,6 @@ epoch: 2001-07-14T07:00:00Z
 weather: {file: denver_july.epw, year: 2001}
 heat: {elements: 40, step_s: 1800, paths: 64}
 sun: {direction: {time_utc: 2001-07-14T07:00:00Z}}
-atmosphere: {profile: midlatitude_summer}
 sensors:
   - {kind: frame_camera, name: eye, columns: 1, rows: 1, pitch_um: 120, focal_length_mm: 30, position_m: [0.3, -3, 5], look_at_m: [0, 0, 2],
      up: [0, 0, 1], time_s: 43200, paths: 8, bands: [{name: b, center_um: 2.2, fwhm_um: 0.6, shape: rectangular}]}
