@@ -51,7 +51,9 @@ class HeatedWalls : public ProgramsTest<HeatedWalls> {
     cool.replace(cool.find("temperature_k: 1300"), 19, "temperature_k: 300");
     write_file(*folder_ / "cool.yaml", std::string_view(cool));
     write_file(*folder_ / "sim.yaml", std::string_view(kSimulation));
-    for (const char* name : {"scene", "cool"}) {
+    cool.insert(cool.find("convection: mcadams"), "source_w_m2: 100000, ");
+    write_file(*folder_ / "source.yaml", std::string_view(cool));
+    for (const char* name : {"scene", "cool", "source"}) {
       const CommandResult prep = run(strf("scene-prep %s.yaml -o %s.h5 -q", name, name));
       ASSERT_EQ(prep.code, 0) << prep.err;
     }
@@ -90,6 +92,10 @@ TEST_F(HeatedWalls, BandsThatDoNotSeeWeatherMaySeeThem) {
   EXPECT_THAT(said, HasSubstr("the scene holds 1300 K"));
   EXPECT_THAT(said, HasSubstr("[DR603]"));
   EXPECT_THAT(told(near + " --set scene=cool.h5"), Not(HasSubstr("stay dark")));
+  // A source of 100 kW/m2 of its own, of which neither the program nor the scene's file may think less.
+  const std::string own = told(near + " --set scene=source.h5");
+  EXPECT_THAT(own, HasSubstr("the scene holds 1167 K"));
+  EXPECT_THAT(own, HasSubstr("[DR603]"));
 }
 
 TEST_F(HeatedWalls, SpansOverMidnightAreToldWithTheirCure) {

@@ -92,6 +92,10 @@ TEST(Influence, WhatIsSeenStaysWithinTheBound) {
   EXPECT_LT(bound, 0.01);
   // Rows of elements of which some are left out are balanced anew from both ends: 2e-4 K of that.
   EXPECT_LE(off, bound + 2e-4);
+  // What is left out may be hotter than weather makes it: the bound follows.
+  const Influence::Range near{std::vector<double>(exchange.faces(), 292), std::vector<double>(exchange.faces(), 292)};
+  EXPECT_GT(Influence(exchange, *kit.faces, 600).off_at_most(seen, kept, near, {292, 292}),
+            3 * influence.off_at_most(seen, kept, near, {292, 292}));
   // Without all that is not seen it is another picture, and the bound knows.
   const auto [alone, alone_bound] = run(seen);
   std::printf("what is seen alone: off by %.3f K, bound %.3f K\n", alone, alone_bound);

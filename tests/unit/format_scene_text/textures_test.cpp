@@ -223,8 +223,7 @@ TEST_F(ObjTextures, AreRefusedWhereTheyCannotBeRead) {
   const std::string red = "newmtl red paint\nKd 0.6 0.1 0.1\n";
   EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd none.png\n"), HasSubstr("t.mtl:3:1: its file 'none.png': no such file"));
   EXPECT_THAT(told(red + "newmtl leaf\nKd 1 x\n"), HasSubstr("t.mtl:4:1: Kd of 'leaf' is no colour"));
-  EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd -s 1e99 1 a leaf.png\n"),
-              HasSubstr("t.mtl:3:1: map_Kd of 'leaf'"));
+  EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd -s 1e99 1 a leaf.png\n"), HasSubstr("t.mtl:3:1: map_Kd of 'leaf'"));
   EXPECT_THAT(told(red + std::string("newmtl leaf\0", 12)), HasSubstr("is not a text file"));
   // What has no colour is no material.
   EXPECT_THAT(told(red + "newmtl leaf\nNs 3\n"), HasSubstr("leaf"));
