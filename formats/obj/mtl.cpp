@@ -243,6 +243,9 @@ std::vector<SourceMaterial> read_mtl(SourceMesh& mesh, const ObjLook& look,
   Taker taker(resolve, std::move(wanted), report);
   for (const std::string& named : look.libraries)
     for (const std::string& path : paths_of(named, resolve)) taker.take(read_library(path));
+  LeftOutLook left;
+  left.coloured = look.coloured;
+  left.report(mesh.file, report);
   lay_out(mesh, taker.rules());
   return taker.take_materials();
 }

@@ -209,6 +209,11 @@ TEST_F(ObjTextures, WhatIsLeftOutIsTold) {
   EXPECT_THAT(report_.text(), HasSubstr("have -mm or -t"));
   bake_obj("newmtl leaf\nKd 1 1 1\n" + red);
   EXPECT_THAT(report_.text(), Not(HasSubstr("left out")));
+  std::string coloured(kText);
+  coloured.replace(coloured.find("v 0 0 0"), 7, "v 0 0 0 1 0 0");
+  write_file(folder_ / "t.obj", std::string_view(coloured));
+  bake_obj("newmtl leaf\nKd 1 1 1\n" + red);
+  EXPECT_THAT(report_.text(), HasSubstr("colours of vertices of 1 mesh part"));
   // Without `textures` the library is not opened, and that is told.
   bake_obj("", ", materials: {leaf: x, red paint: x}}, x: {box: {}");
   EXPECT_THAT(report_.text(), HasSubstr("mtllib t.mtl is not opened"));
