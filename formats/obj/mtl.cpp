@@ -250,4 +250,15 @@ std::vector<SourceMaterial> read_mtl(SourceMesh& mesh, const ObjLook& look,
   return taker.take_materials();
 }
 
+void report_left_out(const ObjLook& look, const std::string& file, Report& report) {
+  const Where whole{file, 0, 0, {}, -1};
+  if (!look.libraries.empty())
+    report.add("SP706", file,
+               {whole, "mtllib " + printable(look.libraries[0]).substr(0, 80) +
+                           ": its display colours are no spectra ('textures: {uplift: texel}' guesses some)"});
+  LeftOutLook left;
+  left.coloured = look.coloured;
+  if (look.coloured) report.add("SP706", file, {whole, left.text()});
+}
+
 }  // namespace suite

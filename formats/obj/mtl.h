@@ -17,4 +17,7 @@ namespace suite {
 std::vector<SourceMaterial> read_mtl(SourceMesh& mesh, const ObjLook& look,
                                      const std::function<std::string(const std::string&)>& resolve, Report& report);
 
+// What a file names for looks and is not read, as SP706.
+void report_left_out(const ObjLook& look, const std::string& file, Report& report);
+
 }  // namespace suite

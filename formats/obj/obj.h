@@ -16,8 +16,7 @@ struct ObjLook {
 
 // Reads the triangles of a file; polygons are split, corners with the same position, normal and UV share a vertex.
 // Findings (SP201 to SP209) go to `report` with their lines; faces that are found wrong are left out. Error when the
-// file cannot be read or is no text. look: filled where it is given; else what the file says of looks is reported as
-// left out (SP706).
+// file cannot be read or is no text. look: filled where it is given (read_mtl, or report_left_out, of mtl.h).
 SourceMesh read_obj(const std::string& path, Report& report, ObjLook* look = nullptr);
 SourceMesh parse_obj(std::string_view text, const std::string& file, Report& report, ObjLook* look = nullptr);
 

@@ -15,7 +15,6 @@
 
 #include "base/files.h"
 #include "math/polygon.h"
-#include "scene/left_out_look.h"
 
 namespace suite {
 
@@ -321,19 +320,7 @@ SourceMesh Collector::finish(ObjLook* look) {
   }
   if (without_normal_ == 0) mesh_.smoothing.clear();  // nothing is left for the groups to decide
   ObjLook found;
-  unlisted_statements(found);
-  if (look) {
-    *look = std::move(found);
-    return std::move(mesh_);
-  }
-  if (!found.libraries.empty())
-    report_.add(
-        "SP706", file_,
-        {whole, "mtllib " + printable(found.libraries[0]).substr(0, 80) +
-                    " is not opened: display colours are no spectra ('textures: {uplift: texel}' guesses them)"});
-  LeftOutLook left;
-  left.coloured = found.coloured;
-  if (found.coloured) report_.add("SP706", file_, {whole, left.text()});
+  unlisted_statements(look ? *look : found);
   return std::move(mesh_);
 }
 

@@ -64,7 +64,9 @@ void Reader::read_mesh(const Params& p, const std::string& kind, DraftGeometry& 
     g.mesh = parse_obj(dirsig::obj_of_gdb(read_text(path), path), path, report_);
     forget_temperatures(p, g.mesh);
   } else {
-    g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_);
+    ObjLook look;
+    g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_, &look);
+    report_left_out(look, g.mesh.file, report_);
   }
 }
 
@@ -82,13 +84,10 @@ std::function<std::string(const std::string&)> Reader::beside(const Params& file
 // With `textures` the colours of its materials, as a model's.
 void Reader::read_obj_mesh(const Params& p, DraftGeometry& g) {
   const Params file = p.at("obj");
-  const auto textures = p.find("textures");
-  if (!textures) {
-    g.mesh = read_obj(input(file), report_);
-    return;
-  }
   ObjLook look;
   g.mesh = read_obj(input(file), report_, &look);
+  const auto textures = p.find("textures");
+  if (!textures) return report_left_out(look, g.mesh.file, report_);
   if (look.libraries.empty())
     throw textures->error("'" + file.as_text() + "' names no library of materials (mtllib)", "leave 'textures' out");
   SourceModel model;

@@ -216,7 +216,7 @@ TEST_F(ObjTextures, WhatIsLeftOutIsTold) {
   EXPECT_THAT(report_.text(), HasSubstr("colours of vertices of 1 mesh part"));
   // Without `textures` the library is not opened, and that is told.
   bake_obj("", ", materials: {leaf: x, red paint: x}}, x: {box: {}");
-  EXPECT_THAT(report_.text(), HasSubstr("mtllib t.mtl is not opened"));
+  EXPECT_THAT(report_.text(), HasSubstr("mtllib t.mtl: its display colours are no spectra"));
 }
 
 TEST_F(ObjTextures, AreRefusedWhereTheyCannotBeRead) {
