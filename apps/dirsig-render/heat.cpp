@@ -41,10 +41,10 @@ bool asks_fluxes(const Simulation& sim) {
 // Sunlight of the elements that are left, with the exchange that is there.
 HeatOperator operator_of_left(const PreparedHeat& p, LeftOut& left, const SunCourse& course,
                               const HeatProgress& progress) {
-  progress.begin("sunlight", 2 * static_cast<double>(p.faces->size()));
+  progress.begin("sunlight", static_cast<double>(p.faces->size()), "face");
   return {left.take_exchange(),
           find_sunlight({*p.tracer, *p.elements, *p.faces, p.optics}, course, path_options(p.spec), nullptr,
-                        [&](size_t more) { progress.done(static_cast<double>(more)); })};
+                        [&](size_t more) { progress.done(static_cast<double>(more) / kSunStages); })};
 }
 
 struct Found {
@@ -56,9 +56,9 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
            const std::string& folder) {
   std::unique_ptr<Progress> bar;
   HeatProgress progress;
-  progress.begin = [&](const std::string& stage, double whole) {
+  progress.begin = [&](const std::string& stage, double whole, const std::string& unit) {
     if (bar) bar->finish();
-    bar = std::make_unique<Progress>("heat: " + stage, whole, "face");
+    bar = std::make_unique<Progress>("heat: " + stage, whole, unit);
   };
   progress.done = [&](double more) { bar->add(more); };
   for (const std::string& sentence : sim.heat->weather->notes()) note("weather: " + sentence);
@@ -86,15 +86,15 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
   found.result =
       solve_heat({*p.tracer, *p.elements, *p.faces, p.optics}, std::move(paths), found.weather, p.spec, progress);
   if (sim.heat->final_gather) {
-    progress.begin("straight sunlight", 1);
+    progress.begin("straight sunlight", 0, "");
     found.result.straight =
         straight_sunlight({*p.tracer, *p.elements, *p.faces, p.optics}, found.weather, found.result, p.spec);
-    progress.done(1);
   }
   if (bar) bar->finish();
   if (left_out) note("heat: " + left_out->sentence(found.result));
   if (left_out && left_out->bound(found.result) > sim.heat->leave_out)
-    emit({Dr::heat_left_out, strf("heat: that is more than the %g K of influence_cutoff_k", sim.heat->leave_out)});
+    emit({Dr::heat_left_out, strf("heat: elements that are left out matter by more than the %g K of influence_cutoff_k",
+                                  sim.heat->leave_out)});
   return found;
 }
 
@@ -210,7 +210,8 @@ namespace {
 // The first sensor that sees it; else the text.
 Where where_heat_is_seen(const Simulation& sim) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
-    if (std::ranges::any_of(sim.sensors[s]->states(), sees_warmth)) return sim.sensor_where[s];
+    if (std::ranges::any_of(sim.sensors[s]->states(), [](const SpectralState& state) { return sees_warmth(state); }))
+      return sim.sensor_where[s];
   return {sim.path, 0, 0, {}, -1};
 }
 
@@ -248,6 +249,7 @@ Heating heating(const std::shared_ptr<const Scene>& scene, const Simulation& sim
   }
   if (!sees_heat(sim, options)) {
     note("no band sees the warmth of weather: temperatures are not found");
+    report_hot_neighbours(*scene, sim);
     return {.pending = true};
   }
   asks_heat(*scene, sim, options);

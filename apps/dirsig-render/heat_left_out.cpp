@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/run_app.h"
 #include "heat/heat_fluxes.h"
+#include "heat/seen_warmth.h"
 #include "sensor/view_cones.h"
 
 namespace suite {
@@ -92,10 +93,11 @@ LeftOut::LeftOut(PreparedHeat& p, const Simulation& sim, std::array<double, 2> a
     : faces_(std::move(p.faces)), seen_(elements_in_view(*p.elements, sim)), air_(air) {
   for (const auto& [name, place] : sim.heat->probes)
     seen_[element_of(*p.tracer, *p.elements, place, p.spec.span.begin)] = true;
-  progress.begin("exchange of infrared", static_cast<double>(faces_->size()));
+  progress.begin("exchange of infrared", static_cast<double>(faces_->size()), "face");
   exchange_ = find_exchange({*p.tracer, *p.elements, *faces_, p.optics}, path_options(p.spec), nullptr,
                             [&](size_t more) { progress.done(static_cast<double>(more)); });
-  influence_ = std::make_unique<const Influence>(exchange_, *faces_);
+  influence_ = std::make_unique<const Influence>(exchange_, *faces_,
+                                                 std::max({kWeatherBelow, hottest_given(p.tracer->scene()), air[1]}));
   const std::string mirror = mirroring(p);
   if (mirror.empty()) {
     // Some room: temperatures that differ raise the bound that holds in the end.
@@ -128,10 +130,17 @@ std::string LeftOut::sentence(const HeatResult& h) const {
   const size_t all = kept_.size(), kept = count_of(kept_);
   if (kept == all)
     return strf("none of the %zu elements are left out: all matter to the %zu in view", all, count_of(seen_));
-  return strf(
-      "%zu of %zu elements are left out, %zu are in view and within %.2g K of what they were with all of them, along "
-      "the same paths, if nothing is warmer than %g K",
-      all - kept, all, count_of(seen_), bound(h), Influence::kHottest);
+  const double off = bound(h);
+  const std::string left = strf("%zu of %zu elements are left out, %zu are in view", all - kept, all, count_of(seen_));
+  if (off >= influence_->hottest())
+    return left + strf(
+                      ": how far they are from what they were with all of them has no bound here, if some of these "
+                      "are as warm as %.4g K",
+                      influence_->hottest());
+  return left + strf(
+                    " and within %.2g K of what they were with all of them, along the same paths, if nothing is "
+                    "warmer than %.4g K",
+                    off, influence_->hottest());
 }
 
 }  // namespace suite

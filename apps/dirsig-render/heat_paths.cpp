@@ -150,12 +150,13 @@ HeatOperator operator_of(const PreparedHeat& p, const SunCourse& course, const S
     sunlight = take_stored(stored, from, identity, found.sun);
     if (sunlight) give_up(found.sun.lit);
   } else {
-    progress.begin("exchange of infrared", count);
+    progress.begin("exchange of infrared", count, "face");
     found.exchange = find_exchange(scene, paths, pieces.get(), done);
   }
   if (!sunlight) {
-    progress.begin("sunlight", 2 * count);
-    found.sun = find_sunlight(scene, course, paths, pieces.get(), done);
+    progress.begin("sunlight", count, "face");
+    found.sun = find_sunlight(scene, course, paths, pieces.get(),
+                              [&](size_t more) { progress.done(static_cast<double>(more) / kSunStages); });
   }
   if (!keeps) return found;
   if (!finished) write_operator(own, found, identity, command_line());

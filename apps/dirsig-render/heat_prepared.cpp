@@ -50,12 +50,22 @@ TimeSpan span_of(const Simulation& sim, double longitude_deg) {
     return *heat.span;
   }
   const double begin = std::round(midnight_before(seen.begin, longitude_deg, Clock(*sim.epoch)) / 60) * 60;
-  if (seen.end > begin + 86400)
-    throw Error(
-        heat.where,
-        strf("the captures take %g hours, which are more than one day of temperatures", (seen.end - seen.begin) / 3600),
-        "give heat 'from' and 'to'");
-  return {begin, begin + 86400};
+  const double midnight = begin + 86400, taken = seen.end - seen.begin;
+  if (seen.end <= midnight) return {begin, midnight};
+  const auto date = [clock = Clock(*sim.epoch)](double t) { return to_iso8601(clock.utc(t), 0); };
+  if (taken > 86400)
+    throw Error(heat.where,
+                strf("the captures take %.4g hours, which are more than one day of temperatures", taken / 3600),
+                strf("give heat a span that holds them: 'from: %s, to: %s'", date(begin).c_str(),
+                     date(begin + 86400 * std::ceil((seen.end - begin) / 86400)).c_str()));
+  // Any day that holds the captures will do; that they lie in its middle is as good as it gets.
+  const double from = std::round((seen.begin + seen.end) / 2 / 60) * 60 - 43200;
+  throw Error(heat.where,
+              strf("temperatures are found from one midnight of the sun to the next, and the captures (%s to %s) lie "
+                   "on both sides of one, at %s",
+                   date(seen.begin).c_str(), date(seen.end).c_str(), date(midnight).c_str()),
+              strf("give heat another day, for which the weather is there: 'from: %s, to: %s'", date(from).c_str(),
+                   date(from + 86400).c_str()));
 }
 
 }  // namespace

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <map>
 
+#include "base/diagnostics.h"
 #include "base/progress.h"
 #include "heat/heat_fluxes.h"
+#include "heat/seen_warmth.h"
 #include "page/page.h"
+#include "spectral/planck.h"
 
 namespace suite {
 
@@ -56,6 +59,21 @@ std::string moment_text(const HeatResult& h, size_t k, const Simulation& sim) {
 }
 
 }  // namespace
+
+void report_hot_neighbours(const Scene& scene, const Simulation& sim) {
+  const double hottest = hottest_given(scene);
+  for (const auto& sensor : sim.sensors)
+    for (const SpectralState& state : sensor->states())
+      if (hottest > kWeatherBelow && sees_warmth(state, hottest)) {
+        emit({Dr::heat_limit,
+              strf("heat: sensor '%s': surfaces that wait for the balance of heat stay dark, as none of its bands sees "
+                   "what is as warm as %g K; the scene holds %.0f K, and what that heats may send out up to %.2g W/(m2 "
+                   "sr um) at %.3g um; temperatures are found with a band beyond 2 um or with `truth: [temperature]`",
+                   sensor->name().c_str(), kWeatherBelow, hottest, planck_radiance(state.high_um, hottest),
+                   state.high_um)});
+        break;
+      }
+}
 
 std::vector<std::string> heat_sentences(const HeatResult& h, const PreparedHeat& p, double seconds) {
   std::vector<std::string> out;

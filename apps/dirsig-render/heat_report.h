@@ -21,6 +21,9 @@ struct PreparedHeat {
   HeatCut cut;  // what the elements were made with
 };
 
+// Where temperatures are not found: reports what in the scene may heat its neighbours until a sensor sees them glow.
+void report_hot_neighbours(const Scene& scene, const Simulation& sim);
+
 // Elements, rays, errors, the balance: sentences.
 std::vector<std::string> heat_sentences(const HeatResult& result, const PreparedHeat& prepared, double seconds);
 // What the audit found, in a sentence; and every probe with both its walks, as CSV.

@@ -11,6 +11,7 @@
 #include "base/outputs.h"
 #include "base/progress.h"
 #include "base/renamed.h"
+#include "bin_choice.h"
 #include "budget_options.h"
 #include "continued.h"
 #include "deck_report.h"
@@ -88,28 +89,6 @@ std::string explain(const std::string& feature) {
     std::string all;
     for (const std::string& name : names) all += ", " + name;
     throw Error(e.message(), near.empty() ? e.hint() + all : "did you mean '" + near + "'?");
-  }
-}
-
-// Chooses the bins of a sensor's states and says what they are good for.
-void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources, BandBiases& biases) {
-  const std::vector<BinReport> reports = choose_bins(scene, sources, sensor);
-  add_biases(reports, biases);
-  for (const BinReport& r : reports) {
-    note(r.text());
-    if (r.met()) continue;
-    if (r.through_gases) {
-      emit({Dr::bins_through_gases,
-            strf("sensor '%s': bands may be farther off than %g %%: %s; %s", r.sensor.c_str(), 100 * r.wanted,
-                 r.missed_text().c_str(),
-                 r.chosen ? "their errors include it"
-                          : "their errors include it; leave out spectral_step_um or give a smaller one")});
-      continue;
-    }
-    emit({Dr::bins, strf("sensor '%s': band '%s' may be %.2g %% off (%s), %g %% is wanted; %s", r.sensor.c_str(),
-                         r.band.c_str(), 100 * r.reached, r.under.c_str(), 100 * r.wanted,
-                         r.chosen ? "more bins are not carried: its spectra have lines that are finer still"
-                                  : "leave out 'spectral_error: 0' or give a smaller spectral_step_um")});
   }
 }
 
@@ -357,6 +336,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   lidars.check(scene);
   if (sim.sensors.empty()) return lidars.run_alone(scene, options);
+  const AskedStates asked = states_of(sim);
   check_job(sim, *scene, options);
   const bool part = options.share && options.share->runs();
   if (o.dry_run) dry_run(scene, sim, options, o), lidars.forecast();
@@ -366,6 +346,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   const RunLock lock = forecast.empty() && (!ranks || ranks->leads()) ? lock_place(o, sim) : RunLock();
   find_beforehand(scene, sim, options, o, facts, ranks);
   if (o.heat_only) return 0;
+  follow_heat(sim, *scene, options, asked);
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);

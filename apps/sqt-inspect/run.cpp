@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -115,9 +116,9 @@ Dir direction(double theta_deg, double phi_deg) {
 void run_eval(const InspectOptions& o, const sqt::Bundle& bundle) {
   const std::vector<double> a = number_list("--eval", o.eval, 5, 5);
   const std::vector<double>& um = bundle.info().function.wavelength_um;
-  if (a[4] < um.front() || a[4] > um.back())
-    warn(strf("the fit stands for %g to %g um: at %g um the value at its nearer end is printed", um.front(), um.back(),
-              a[4]));
+  const auto [low, high] = std::ranges::minmax(um);  // channels of colours descend
+  if (a[4] < low || a[4] > high)
+    warn(strf("the fit stands for %g to %g um: at %g um the value at its nearer end is printed", low, high, a[4]));
   const Answer r = answer(bundle, direction(a[0], a[1]), direction(a[2], a[3]), a[4]);
   std::printf("f_per_sr %.9g\nw_per_sr %.9g\npdf_per_sr %.9g\ntotal %.9g\n", r.f, r.w, r.pdf, r.total);
 }

@@ -3,6 +3,7 @@
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <algorithm>
 #include <assimp/Importer.hpp>
 
 #include "base/late_part.h"
@@ -57,6 +58,21 @@ void materials_of(const aiScene& scene, AssimpModel& model) {
     made.name = from.GetName().C_Str();
     aiColor3D colour(1, 1, 1);
     if (from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == AI_SUCCESS) made.rgb = {colour.r, colour.g, colour.b};
+    const auto any_of = [&](std::initializer_list<aiTextureType> kinds) {
+      return std::any_of(kinds.begin(), kinds.end(),
+                         [&](aiTextureType kind) { return from.GetTextureCount(kind) > 0; });
+    };
+    float opacity = 1;
+    aiColor3D glow(0, 0, 0);
+    const bool translucent = from.Get(AI_MATKEY_OPACITY, opacity) == AI_SUCCESS && opacity < 1;
+    const bool glows =
+        from.Get(AI_MATKEY_COLOR_EMISSIVE, glow) == AI_SUCCESS && (glow.r > 0 || glow.g > 0 || glow.b > 0);
+    model.see_through += translucent || any_of({aiTextureType_OPACITY});
+    model.shining += glows || any_of({aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR});
+    model.bumps +=
+        any_of({aiTextureType_HEIGHT, aiTextureType_NORMALS, aiTextureType_DISPLACEMENT, aiTextureType_NORMAL_CAMERA});
+    model.gloss += any_of({aiTextureType_SPECULAR, aiTextureType_SHININESS, aiTextureType_REFLECTION,
+                           aiTextureType_METALNESS, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_AMBIENT_OCCLUSION});
     for (int kind = aiTextureType_DIFFUSE; kind <= aiTextureType_UNKNOWN; ++kind)
       model.textures += from.GetTextureCount(static_cast<aiTextureType>(kind));
     model.materials.push_back(std::move(made));

@@ -46,8 +46,8 @@ class Archive {
   void fields(AssimpMaterial& m) { one(m.name), one(m.rgb); }
   void fields(AssimpModel& m) {
     one(m.fault), many(m.meshes), many(m.nodes), many(m.materials), one(m.unit_cm), one(m.axes);
-    for (uint64_t* count :
-         {&m.animations, &m.cameras, &m.lights, &m.textures, &m.bones, &m.morphs, &m.colours, &m.lines})
+    for (uint64_t* count : {&m.animations, &m.cameras, &m.lights, &m.textures, &m.bones, &m.morphs, &m.colours,
+                            &m.lines, &m.see_through, &m.shining, &m.bumps, &m.gloss})
       one(*count);
   }
 

@@ -43,6 +43,8 @@ struct AssimpModel {
   std::array<int32_t, 6> axes{-1, 1, -1, 1, -1, 1};
   // What a scene has no place for.
   uint64_t animations = 0, cameras = 0, lights = 0, textures = 0, bones = 0, morphs = 0, colours = 0, lines = 0;
+  // Materials of which a scene has no place for something: left_out_look.h.
+  uint64_t see_through = 0, shining = 0, bumps = 0, gloss = 0;
 };
 
 // extension: of the file's name, which says what it is. as_stored: axes of Collada are not turned to y up.

@@ -8,6 +8,7 @@
 #include "formats/assimp/assimp.h"
 #include "formats/assimp/long_numbers.h"
 #include "formats/assimp/pack.h"
+#include "scene/left_out_look.h"
 
 namespace suite {
 
@@ -165,13 +166,17 @@ void Builder::report_left_out() const {
   say("SP705", model_.animations, "animations: everything stands as it is stored");
   say("SP705", model_.bones, "meshes with bones: they keep their basic shape");
   say("SP705", model_.morphs, "meshes with morph targets: they keep their basic shape");
-  say("SP705", model_.textures, "textures: display colours are no spectra, maps are");
+  say("SP705", model_.textures,
+      "textures: display colours are no spectra, maps are; written as glTF or OBJ they can be uplifted ('textures')");
   say("SP705", model_.lights, "lights: lights belong to the simulation");
   if (model_.fbx)
     say("SP705", scaled_otherwise(model_),
         "nodes inherit their parents' scale in another way than matrices do (InheritType): they are bent or too large");
   say("SP706", model_.cameras, "cameras: cameras belong to the simulation");
-  say("SP706", model_.colours, "meshes with colours of vertices: display colours are no spectra");
+  LeftOutLook look;
+  look.see_through = model_.see_through, look.shining = model_.shining, look.bumps = model_.bumps;
+  look.gloss = model_.gloss, look.coloured = model_.colours;
+  look.report(whole_.file, report_);
   say("SP205", model_.lines, "points or lines");
 }
 

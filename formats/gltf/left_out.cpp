@@ -1,8 +1,8 @@
 // What a file says and a scene has no place for.
 #include <algorithm>
-#include <functional>
 
 #include "formats/gltf/load.h"
+#include "scene/left_out_look.h"
 
 namespace suite::gltf {
 
@@ -32,7 +32,7 @@ constexpr Extension kKnown[] = {
     {"KHR_materials_variants", "the materials that stand at the primitives hold"},
     {"KHR_materials_volume", kNoSpectra},
     {"KHR_texture_basisu", "textures are no spectra"},
-    {"KHR_texture_transform", "texture coordinates are taken as they are"},
+    {"KHR_texture_transform", nullptr},
     {"KHR_xmp_json_ld", "metadata"},
     {"EXT_texture_webp", "textures are no spectra"},
     {"MSFT_texture_dds", "textures are no spectra"},
@@ -43,20 +43,20 @@ const Extension* known(const std::string& name) {
   return found == std::end(kKnown) ? nullptr : found;
 }
 
-// What is left out of materials whose base colours are taken.
-void report_surfaces(const tinygltf::Model& model,
-                     const std::function<void(const char*, const std::string&, size_t)>& add_finding) {
-  size_t metals = 0, others = 0;
+// What is left out of materials and meshes.
+LeftOutLook look_of(const tinygltf::Model& model) {
+  LeftOutLook look;
   for (const tinygltf::Material& m : model.materials) {
-    const tinygltf::PbrMetallicRoughness& pbr = m.pbrMetallicRoughness;
-    metals += pbr.metallicFactor > 0.5 && pbr.metallicRoughnessTexture.index < 0;
-    others += (pbr.metallicRoughnessTexture.index >= 0) + (m.normalTexture.index >= 0) +
-              (m.occlusionTexture.index >= 0) + (m.emissiveTexture.index >= 0);
+    const auto& glow = m.emissiveFactor;
+    look.see_through += m.alphaMode != "OPAQUE" && !m.alphaMode.empty();
+    look.shining += std::any_of(glow.begin(), glow.end(), [](double v) { return v > 0; });
+    look.bumps += m.normalTexture.index >= 0;
+    look.gloss += m.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 || m.occlusionTexture.index >= 0;
+    look.one_sided += !m.doubleSided;
   }
-  add_finding("SP707", strf("%zu materials of metal: they are matte here ('materials:' names better ones)", metals),
-              metals);
-  add_finding("SP705", strf("%zu textures of roughness, normals, occlusion or light: base colours are taken", others),
-              others);
+  for (const tinygltf::Mesh& mesh : model.meshes)
+    for (const tinygltf::Primitive& p : mesh.primitives) look.coloured += p.attributes.count("COLOR_0");
+  return look;
 }
 
 }  // namespace
@@ -97,27 +97,21 @@ void report_left_out(const tinygltf::Model& model, const std::string& file, bool
         strf("%zu textures: display colours are no spectra, maps are ('textures: {uplift: texel}' guesses spectra)",
              model.textures.size()),
         model.textures.size());
-  if (textures) report_surfaces(model, add_finding);
-  size_t morphs = 0, colours = 0, see_through = 0, shining = 0, coordinates = 0;
+  size_t metals = 0, morphs = 0, coordinates = 0;
+  for (const tinygltf::Material& m : model.materials)
+    metals += m.pbrMetallicRoughness.metallicFactor > 0.5 && m.pbrMetallicRoughness.metallicRoughnessTexture.index < 0;
   for (const tinygltf::Mesh& mesh : model.meshes)
-    for (const tinygltf::Primitive& p : mesh.primitives) {
-      morphs += !p.targets.empty();
-      colours += p.attributes.count("COLOR_0"), coordinates += p.attributes.count("TEXCOORD_1");
-    }
-  for (const tinygltf::Material& m : model.materials) {
-    see_through += m.alphaMode != "OPAQUE" && !m.alphaMode.empty();
-    shining += std::any_of(m.emissiveFactor.begin(), m.emissiveFactor.end(), [](double v) { return v > 0; });
-  }
+    for (const tinygltf::Primitive& p : mesh.primitives)
+      morphs += !p.targets.empty(), coordinates += p.attributes.count("TEXCOORD_1");
+  if (!textures)
+    add_finding("SP706",
+                strf("%zu primitives with a second set of texture coordinates: the first is taken", coordinates),
+                coordinates);
+  if (textures)
+    add_finding("SP707", strf("%zu materials of metal: they are matte here ('materials:' names better ones)", metals),
+                metals);
   add_finding("SP705", strf("%zu primitives with morph targets: they keep their basic shape", morphs), morphs);
-  add_finding("SP706", strf("%zu primitives with colours of vertices: display colours are no spectra", colours),
-              colours);
-  add_finding("SP706", strf("%zu primitives with a second set of texture coordinates: the first is taken", coordinates),
-              coordinates);
-  add_finding(
-      "SP705",
-      strf("%zu materials that are seen through: surfaces are whole, an 'opacity' map makes holes", see_through),
-      see_through);
-  add_finding("SP705", strf("%zu materials that shine: radiance comes from temperatures and lamps", shining), shining);
+  look_of(model).report(file, report);
 }
 
 }  // namespace suite::gltf

@@ -48,9 +48,21 @@ std::vector<std::string> material_names(const tinygltf::Model& model);
 std::shared_ptr<const SourceTexture> texture_of(const tinygltf::Model& model, const std::string& file, size_t material,
                                                 const Resolve& resolve, Report& report);
 
+// Which texture coordinates a material's image of base colours is laid out by, and what is made of them first
+// (KHR_texture_transform), in the file's own u and v, which counts downwards: (a u + b v + c, d u + e v + f).
+struct UvRule {
+  int set = 0;  // TEXCOORD_set
+  std::array<double, 6> transform{1, 0, 0, 0, 1, 0};
+  bool operator==(const UvRule&) const = default;
+};
+// material: -1 for none. Error: fault().
+UvRule uv_rule_of(const tinygltf::Model& model, const std::string& file, int material);
+
+// What texture coordinates a mesh gets: the first of the file, or those by which images of base colours are laid out.
+enum class MeshUvs { first, of_base_colours };
 // The triangles of a mesh; nothing when it has none (points and lines are told).
 std::optional<SourceMesh> mesh_of(const tinygltf::Model& model, const std::string& file, int mesh, double unit_m,
-                                  Report& report);
+                                  MeshUvs uvs, Report& report);
 
 // Where a node stands in its parent, m.
 struct Local {

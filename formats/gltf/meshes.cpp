@@ -12,11 +12,12 @@ constexpr size_t kMostTriangles = size_t{1} << 28, kMostVertices = size_t{1} << 
 
 class Joiner {
  public:
-  Joiner(const tinygltf::Model& model, const std::string& file, double unit_m)
-      : model_(model), file_(file), unit_m_(unit_m), materials_(material_names(model)) {
+  Joiner(const tinygltf::Model& model, const std::string& file, double unit_m, MeshUvs uvs)
+      : model_(model), file_(file), unit_m_(unit_m), uvs_(uvs), materials_(material_names(model)) {
     made_.file = file;
   }
   void add(const tinygltf::Primitive& primitive, const std::string& at);
+  size_t without_their_uvs() const { return without_their_uvs_; }  // primitives
   SourceMesh take();
 
  private:
@@ -30,23 +31,30 @@ class Joiner {
   const tinygltf::Model& model_;
   const std::string& file_;
   const double unit_m_;
+  const MeshUvs uvs_;
   const std::vector<std::string> materials_;
-  std::map<std::map<std::string, int>, Vertices> known_;
+  // By accessors of what is taken of an attribute, and what is made of texture coordinates.
+  std::map<std::pair<std::map<std::string, int>, std::array<double, 6>>, Vertices> known_;
+  size_t without_their_uvs_ = 0;
   bool any_normal_ = false, any_uv_ = false;
   SourceMesh made_;
 };
 
 Joiner::Vertices Joiner::vertices(const tinygltf::Primitive& primitive, const std::string& at) {
+  UvRule rule = uvs_ == MeshUvs::of_base_colours ? uv_rule_of(model_, file_, primitive.material) : UvRule{};
+  std::string uvs = strf("TEXCOORD_%d", rule.set);
+  if (rule.set > 0 && !primitive.attributes.count(uvs)) ++without_their_uvs_, uvs = "TEXCOORD_0";
   std::map<std::string, int> taken;
-  for (const char* name : {"POSITION", "NORMAL", "TEXCOORD_0"})
+  for (const std::string& name : {std::string("POSITION"), std::string("NORMAL"), uvs})
     if (const auto found = primitive.attributes.find(name); found != primitive.attributes.end()) taken.insert(*found);
-  if (const auto found = known_.find(taken); found != known_.end()) return found->second;
-  const auto read = [&](const char* name, size_t components) {
+  const auto key = std::pair(taken, rule.transform);
+  if (const auto found = known_.find(key); found != known_.end()) return found->second;
+  const auto read = [&](const std::string& name, size_t components) {
     return taken.count(name) ? values_of(model_, file_, taken.at(name), at + "/attributes/" + name, {components})
                              : Values{};
   };
-  const Values position = read("POSITION", 3), normal = read("NORMAL", 3), uv = read("TEXCOORD_0", 2);
-  for (const auto& [values, name] : {std::pair{&normal, "NORMAL"}, std::pair{&uv, "TEXCOORD_0"}})
+  const Values position = read("POSITION", 3), normal = read("NORMAL", 3), uv = read(uvs, 2);
+  for (const auto& [values, name] : {std::pair{&normal, std::string("NORMAL")}, std::pair{&uv, uvs}})
     if (taken.count(name) && values->count != position.count)
       throw fault(file_, at + "/attributes/" + name,
                   strf("%zu values for %zu positions", values->count, position.count));
@@ -61,10 +69,12 @@ Joiner::Vertices Joiner::vertices(const tinygltf::Primitive& primitive, const st
     const double size = length(n);
     made_.normals.push_back(size > 0 && std::isfinite(size) ? oct_encode(n / size) : kNoNormal);
     // v counts downwards in the file, upwards here.
-    made_.uvs.push_back(uv.count ? static_cast<float>(uv.numbers[2 * k]) : 0);
-    made_.uvs.push_back(uv.count ? static_cast<float>(1 - uv.numbers[2 * k + 1]) : 0);
+    const auto& t = rule.transform;
+    const double u = uv.count ? uv.numbers[2 * k] : 0, v = uv.count ? uv.numbers[2 * k + 1] : 0;
+    made_.uvs.push_back(uv.count ? static_cast<float>(t[0] * u + t[1] * v + t[2]) : 0);
+    made_.uvs.push_back(uv.count ? static_cast<float>(1 - (t[3] * u + t[4] * v + t[5])) : 0);
   }
-  return known_[taken] = made;
+  return known_[key] = made;
 }
 
 // The vertices in the order in which triangles are made of them, as they are numbered in the joined mesh.
@@ -140,10 +150,10 @@ std::vector<std::string> material_names(const tinygltf::Model& model) {
 }
 
 std::optional<SourceMesh> mesh_of(const tinygltf::Model& model, const std::string& file, int index, double unit_m,
-                                  Report& report) {
+                                  MeshUvs uvs, Report& report) {
   const tinygltf::Mesh& mesh = model.meshes[static_cast<size_t>(index)];
   const Where where{file, 0, 0, {}, -1};
-  Joiner joiner(model, file, unit_m);
+  Joiner joiner(model, file, unit_m, uvs);
   size_t left_out = 0;
   for (size_t k = 0; k < mesh.primitives.size(); ++k) {
     const tinygltf::Primitive& primitive = mesh.primitives[k];
@@ -158,6 +168,13 @@ std::optional<SourceMesh> mesh_of(const tinygltf::Model& model, const std::strin
   if (left_out)
     report.add("SP205", file, {where, strf("meshes[%d]: %zu primitives of points or lines", index, left_out)},
                left_out);
+  if (joiner.without_their_uvs())
+    report.add(
+        "SP705", file,
+        {where, strf("meshes[%d]: %zu primitives have not the texture coordinates that their material's image is "
+                     "laid out by: TEXCOORD_0 is taken",
+                     index, joiner.without_their_uvs())},
+        joiner.without_their_uvs());
   SourceMesh made = joiner.take();
   if (made.indices.empty()) return std::nullopt;
   return made;

@@ -84,7 +84,8 @@ std::string Builder::mesh_name(int index, const std::string& at) {
   std::optional<std::string>& name = mesh_names_[static_cast<size_t>(index)];
   if (name) return *name;
   name = "";
-  if (auto triangles = mesh_of(model_, file_, index, options_.unit_m, report_)) {
+  if (auto triangles = mesh_of(model_, file_, index, options_.unit_m,
+                               options_.textures ? MeshUvs::of_base_colours : MeshUvs::first, report_)) {
     name = names_.make(mesh.name, strf("mesh_%d", index));
     result_.meshes.push_back({*name, std::move(*triangles)});
   }

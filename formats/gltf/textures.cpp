@@ -1,5 +1,7 @@
 // Images of base colours: packed as they are in the file, the container or a data URI.
 // Based on: Khronos Group, "glTF 2.0 Specification", 2021, sections 3.8 and 3.9.2.
+#include <cmath>
+
 #include "base/files.h"
 #include "formats/gltf/load.h"
 
@@ -56,7 +58,48 @@ SourceTexture::Extend extend_of(const tinygltf::Sampler& sampler, const std::str
                                                               : SourceTexture::Extend::repeat;
 }
 
+// Some numbers of an extension's object. Error: fault(); fewer or more, or none at all.
+std::vector<double> numbers_of(const tinygltf::Value& object, const char* key, size_t count, double otherwise,
+                               const std::string& file, const std::string& pointer) {
+  if (!object.Has(key)) return std::vector<double>(count, otherwise);
+  const tinygltf::Value& given = object.Get(key);
+  std::vector<double> numbers;
+  if (count == 1 && given.IsNumber()) numbers.push_back(given.GetNumberAsDouble());
+  for (size_t k = 0; given.IsArray() && k < given.ArrayLen(); ++k)
+    numbers.push_back(given.Get(k).IsNumber() ? given.Get(k).GetNumberAsDouble() : NAN);
+  for (const double v : numbers)
+    if (!(std::fabs(v) <= 1e6)) numbers.clear();
+  if (numbers.size() != count)
+    throw fault(file, pointer + "/" + key, strf("%zu numbers between -1e6 and 1e6 are expected", count));
+  return numbers;
+}
+
 }  // namespace
+
+// Khronos Group, "KHR_texture_transform", 2018: scaled, turned and moved, in this order. Its text and its example (the
+// lower left quarter of the image by an offset of (0, 1), a quarter turn and a scale of a half) agree on which way it
+// turns, its lines of GLSL turn the other way.
+UvRule uv_rule_of(const tinygltf::Model& model, const std::string& file, int material) {
+  UvRule rule;
+  if (material < 0) return rule;
+  const tinygltf::TextureInfo& info =
+      model.materials[static_cast<size_t>(material)].pbrMetallicRoughness.baseColorTexture;
+  if (info.index < 0) return rule;
+  rule.set = info.texCoord;
+  const std::string at = strf("materials[%d]/pbrMetallicRoughness/baseColorTexture", material);
+  if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end()) {
+    const std::string pointer = at + "/extensions/KHR_texture_transform";
+    const std::vector<double> offset = numbers_of(found->second, "offset", 2, 0, file, pointer),
+                              scale = numbers_of(found->second, "scale", 2, 1, file, pointer),
+                              turn = numbers_of(found->second, "rotation", 1, 0, file, pointer),
+                              set = numbers_of(found->second, "texCoord", 1, rule.set, file, pointer);
+    const double c = std::cos(turn[0]), s = std::sin(turn[0]);
+    rule.transform = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    rule.set = static_cast<int>(set[0]);
+  }
+  if (rule.set < 0) throw fault(file, at, strf("texture coordinates of the number %d", rule.set), "they count from 0");
+  return rule;
+}
 
 std::shared_ptr<const SourceTexture> texture_of(const tinygltf::Model& model, const std::string& file, size_t material,
                                                 const Resolve& resolve, Report& report) {
@@ -67,9 +110,6 @@ std::shared_ptr<const SourceTexture> texture_of(const tinygltf::Model& model, co
   const std::string pointer = strf("textures[%d]", info.index);
   if (texture.source < 0)
     throw fault(file, pointer + "/source", "the image is in a format of an extension", "write it as PNG or JPEG");
-  if (info.texCoord != 0)
-    report.add("SP707", file,
-               {Where{file, 0, 0, {}, -1}, at + ": is laid out by the first texture coordinates, not its own"});
   auto made = std::make_shared<SourceTexture>();
   made->name = file + ": " + pointer;
   made->bytes = bytes_of(model, file, texture.source, pointer + "/source", resolve);

@@ -30,6 +30,20 @@ class MemoryBuffer : public std::streambuf {
   size_t position() const { return static_cast<size_t>(gptr() - eback()); }
 };
 
+std::string trimmed(std::string_view text) {
+  const size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
+  return first == text.npos ? std::string() : std::string(text.substr(first, last - first + 1));
+}
+
+size_t words_of(std::string_view text) {
+  size_t words = 0;
+  for (size_t at = text.find_first_not_of(" \t\r"); at != text.npos && text[at] != '#'; ++words) {
+    at = text.find_first_of(" \t\r", at);
+    if (at != text.npos) at = text.find_first_not_of(" \t\r", at);
+  }
+  return words;
+}
+
 class Collector {
  public:
   Collector(std::string_view original, const MemoryBuffer& buffer, const std::string& file, Report& report)
@@ -51,16 +65,14 @@ class Collector {
   }
   void face(const tinyobj::index_t* corner, int count);
   void use_material(const char* name) {
-    const std::string_view text(name);
-    const size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-    material_ = first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
+    material_ = trimmed(name);
     new_run_ = true;
   }
   void part(std::string name) {
     group_ = std::move(name);
     new_run_ = true;
   }
-  SourceMesh finish();
+  SourceMesh finish(ObjLook* look);
 
  private:
   struct Corner {
@@ -107,7 +119,7 @@ class Collector {
   void check_number_line(int at_least, Vec3 value);
   bool resolve(int index, size_t count, const char* what, const char* code, uint32_t& out);
   uint32_t output_vertex(const Corner& c);
-  void unlisted_statements();
+  void unlisted_statements(ObjLook& look);
 
   std::string_view original_;
   const MemoryBuffer& buffer_;
@@ -252,10 +264,11 @@ void Collector::face(const tinyobj::index_t* corner, int count) {
   if (!clean) add("SP206", strf("polygon of %d corners", count));
 }
 
-// Statements that make no triangles but look as if they meant to.
-void Collector::unlisted_statements() {
+// Statements that make no triangles but look as if they meant to; libraries of materials, and colours.
+void Collector::unlisted_statements(ObjLook& look) {
   static constexpr std::string_view others[] = {"l", "p", "curv", "curv2", "surf"};
   int line = 0;
+  bool looked_at_vertex = false;
   for (size_t start = 0; start < original_.size();) {
     size_t end = original_.find('\n', start);
     if (end == std::string_view::npos) end = original_.size();
@@ -267,11 +280,21 @@ void Collector::unlisted_statements() {
     const std::string_view word = original_.substr(i, stop - i);
     if (stop < end && std::find(std::begin(others), std::end(others), word) != std::end(others))
       report_.add("SP205", file_, {{file_, line, 1, {}, -1}, "'" + std::string(word) + "'"});
+    if (word == "mtllib" && stop < end) {
+      const std::string name = trimmed(original_.substr(stop, end - stop));
+      if (!name.empty() && std::ranges::find(look.libraries, name) == look.libraries.end())
+        look.libraries.push_back(name);
+    }
+    // Colours stand at all vertices of a file or at none.
+    if (word == "v" && !looked_at_vertex) {
+      looked_at_vertex = true;
+      look.coloured = words_of(original_.substr(stop, end - stop)) >= 6;
+    }
     start = end + 1;
   }
 }
 
-SourceMesh Collector::finish() {
+SourceMesh Collector::finish(ObjLook* look) {
   const size_t corners = mesh_.indices.size(), n = shared_.size();
   const Where whole{file_, 0, 0, {}, -1};
   if (corners == 0) report_.add("SP204", file_, {whole, "no face"});
@@ -296,7 +319,8 @@ SourceMesh Collector::finish() {
           mesh_.normals[k] = oct_encode(normalized(v));
   }
   if (without_normal_ == 0) mesh_.smoothing.clear();  // nothing is left for the groups to decide
-  unlisted_statements();
+  ObjLook found;
+  unlisted_statements(look ? *look : found);
   return std::move(mesh_);
 }
 
@@ -304,7 +328,7 @@ Collector& self(void* user) { return *static_cast<Collector*>(user); }
 
 }  // namespace
 
-SourceMesh parse_obj(std::string_view text, const std::string& file, Report& report) {
+SourceMesh parse_obj(std::string_view text, const std::string& file, Report& report, ObjLook* look) {
   if (const size_t zero = text.find('\0'); zero != std::string_view::npos)
     throw Error(Where{file, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file", "Wavefront OBJ is expected",
                 "SP003");
@@ -340,11 +364,11 @@ SourceMesh parse_obj(std::string_view text, const std::string& file, Report& rep
   std::string warnings, errors;
   if (!tinyobj::LoadObjWithCallback(stream, call, &collector, nullptr, &warnings, &errors))
     throw Error(Where{file, 0, 0, {}, -1}, "cannot be read as OBJ: " + errors);
-  return collector.finish();
+  return collector.finish(look);
 }
 
-SourceMesh read_obj(const std::string& path, Report& report) {
-  return parse_obj(read_text(path, size_t{16} << 30), path, report);
+SourceMesh read_obj(const std::string& path, Report& report, ObjLook* look) {
+  return parse_obj(read_text(path, size_t{16} << 30), path, report, look);
 }
 
 }  // namespace suite

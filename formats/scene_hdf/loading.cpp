@@ -5,13 +5,14 @@
 #include "formats/scene_hdf/internal.h"
 #include "spectral/planck.h"
 #include "sqt/bundle.h"
+#include "thermal/models.h"
 
 namespace suite {
 
 namespace {
 constexpr double kDark = 1e-9;           // W/(m2 sr um): below this nothing glows
 constexpr double kHottestWeather = 450;  // K, what sun and sky may make of a surface
-constexpr double kHottestSlab = 1500;    // K, what a simulated temperature may reach
+constexpr double kHottestSlab = 1500;    // K, what loads may make of a slab
 
 // Whether a model prefers a direction along the surface, from what is written of it.
 bool anisotropic(const ModelSpec& m) {
@@ -111,8 +112,7 @@ void drop_temperatures(Scene& s, Loading& loading) {
   double hottest = 0;
   for (const Material& m : s.materials) hottest = std::max(hottest, m.temperature_k);
   for (const TemperatureBinding& t : s.temperatures) {
-    for (const double k : t.spec.kelvins) hottest = std::max(hottest, k);
-    if (t.spec.numbers.count("kelvin")) hottest = std::max(hottest, t.spec.numbers.at("kelvin"));
+    hottest = std::max(hottest, hottest_given(t.spec));
     if (t.spec.model == "slab") hottest = std::max(hottest, kHottestSlab), loading.conducts = true;
     if (t.spec.model == "heat") hottest = std::max(hottest, kHottestWeather), loading.conducts = true;
   }

@@ -8,7 +8,7 @@
 #include "formats/city/city.h"
 #include "formats/dirsig/dirsig.h"
 #include "formats/gltf/gltf.h"
-#include "formats/obj/obj.h"
+#include "formats/obj/mtl.h"
 #include "formats/ply/ply.h"
 #include "formats/scene_text/reader.h"
 #include "formats/stl/stl.h"
@@ -54,7 +54,7 @@ void Reader::read_mesh(const Params& p, const std::string& kind, DraftGeometry& 
   g.to_local = scaling({unit, unit, unit});
   if (y_up(p, false)) g.to_local = g.to_local * kFromYUp;
   if (kind == "obj") {
-    g.mesh = read_obj(input(p.at("obj")), report_);
+    read_obj_mesh(p, g);
   } else if (kind == "ply") {
     g.mesh = of_file([&] { return read_ply(input(p.at("ply")), report_); });
   } else if (kind == "stl") {
@@ -64,8 +64,35 @@ void Reader::read_mesh(const Params& p, const std::string& kind, DraftGeometry& 
     g.mesh = parse_obj(dirsig::obj_of_gdb(read_text(path), path), path, report_);
     forget_temperatures(p, g.mesh);
   } else {
-    g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_);
+    ObjLook look;
+    g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_, &look);
+    report_left_out(look, g.mesh.file, report_);
   }
+}
+
+// Files that a model names, by its own place.
+std::function<std::string(const std::string&)> Reader::beside(const Params& file) {
+  return [this, file, folder = std::filesystem::path(file.as_text()).parent_path()](const std::string& name) {
+    try {
+      return inputs_.add((folder / name).string()).path;
+    } catch (const Error& e) {
+      throw Error(file.where(), "its file '" + printable(name) + "': " + e.message(), e.hint(), "SP003");
+    }
+  };
+}
+
+// With `textures` the colours of its materials, as a model's.
+void Reader::read_obj_mesh(const Params& p, DraftGeometry& g) {
+  const Params file = p.at("obj");
+  ObjLook look;
+  g.mesh = read_obj(input(file), report_, &look);
+  const auto textures = p.find("textures");
+  if (!textures) return report_left_out(look, g.mesh.file, report_);
+  if (look.libraries.empty())
+    throw textures->error("'" + file.as_text() + "' names no library of materials (mtllib)", "leave 'textures' out");
+  SourceModel model;
+  model.materials = of_file([&] { return read_mtl(g.mesh, look, beside(file), report_); });
+  of_file([&] { read_textures(*textures, model, g); });
 }
 
 // Facets with temperatures of their own have materials ID@-23.15C; where the text has none of that name they are as the
@@ -113,14 +140,7 @@ void Reader::read_model(const Params& p, const std::string& kind, DraftGeometry 
   const auto textures = kind == "gltf" ? p.find("textures") : std::nullopt;
   options.textures = textures.has_value();
   const Params file = p.at(kind);
-  const std::filesystem::path folder = std::filesystem::path(file.as_text()).parent_path();
-  options.resolve = [&](const std::string& name) {
-    try {
-      return inputs_.add((folder / name).string()).path;
-    } catch (const Error& e) {
-      throw Error(file.where(), "its file '" + printable(name) + "': " + e.message(), e.hint(), "SP003");
-    }
-  };
+  options.resolve = beside(file);
   SourceModel model = of_file([&] {
     if (kind == "gltf") return read_gltf(input(file), options, report_);
     return read_assimp(input(file), options, p.has("up") ? &options.y_up : nullptr, report_);

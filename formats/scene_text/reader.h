@@ -96,6 +96,8 @@ class Reader {
   void read_mesh(const Params& p, const std::string& kind, DraftGeometry& g);
   void read_model(const Params& p, const std::string& kind, DraftGeometry g, size_t slot);
   void read_city_mesh(const Params& p, DraftGeometry& g);
+  void read_obj_mesh(const Params& p, DraftGeometry& g);
+  std::function<std::string(const std::string&)> beside(const Params& file);
   void forget_temperatures(const Params& p, SourceMesh& mesh);
   // textures.cpp
   std::array<double, 3> read_texture(const Params& p, const SourceMaterial& from, const std::string& id,

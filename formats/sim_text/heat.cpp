@@ -119,6 +119,9 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
     throw heat->error("a span of time has 'from' and 'to'", "give both, or none: the day of the captures");
   if (from) {
     out.span = TimeSpan{context.time(*from), context.time(*to)};
+    if (out.span->end < out.span->begin)
+      throw to->error(strf("'to' is %.4g hours before 'from'", (out.span->begin - out.span->end) / 3600),
+                      "a span over midnight ends on the next date");
     if (!(out.span->end - out.span->begin >= kHeatParts * s.step))
       throw to->error(strf("the span of %g s is shorter than %u steps", out.span->end - out.span->begin, kHeatParts),
                       "a later 'to' or a smaller step_s");

@@ -13,7 +13,7 @@ std::vector<GasLimit> limits_of_lowtran(WaterOf continuum) {
       "carbon dioxide, water; measured without water: 1.7 K rms, 3 K at most; the rest is an allowance for "
       "water, not measured, nor are slanted paths"};
   if (continuum == WaterOf::mt_ckd)
-    return {{1.1, 1.35, {0.022, 0.092}, 0.004, {}, {}, "water, oxygen"},
+    return {{1.1, 1.35, {0.023, 0.092}, 0.005, {}, {}, "water, oxygen"},
             {2.0, 2.4, {0.034, 0.12}, -0.025, {}, {}, "water, methane"},
             {2.9, 3.4, {0.032, 0.095}, 0.01, {1.1, 2.7}, {1.5, 5.0}, "water"},
             {3.4,
@@ -52,7 +52,7 @@ std::vector<GasLimit> limits_of_lowtran(WaterOf continuum) {
            {2.5, 6.2},
            "water's continuum of 1988 is too strong, `water_continuum: FILE` of MT_CKD has 0.024 rms"},
           {5.3, 7.2, {0.027, 0.18}, -0.008, {2.2, 5.1}, {1.9, 5.1}, "water"},
-          {7.2, 8.2, {0.043, 0.11}, -0.025, {2.1, 4.7}, {3.1, 8.7}, "water, methane"},
+          {7.2, 8.2, {0.043, 0.11}, -0.025, {2.1, 4.7}, {3.2, 8.7}, "water, methane"},
           {8.2, 9.3, {0.025, 0.046}, -0.02, {1.4, 3.2}, {2.8, 7.6}, "water"},
           {9.3, 10.15, {0.032, 0.085}, 0.007, {1.9, 4.7}, {2.8, 8.9}, "ozone"},
           {10.15, 12.4, {0.027, 0.067}, 0.022, {1.3, 3.0}, {2.4, 8.6}, "water's continuum, aerosol"},

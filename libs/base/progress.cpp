@@ -25,10 +25,11 @@ std::string counted(double count, const std::string& unit) {
 void Progress::set_quiet(bool quiet) { g_quiet = quiet; }
 void Progress::set_silent(bool silent) { g_silent = silent; }
 
-Progress::Progress(std::string label, double total, std::string unit)
+Progress::Progress(std::string label, double total, std::string unit, TimeLeft::Bounds bounds)
     : label_(std::move(label)),
       unit_(std::move(unit)),
       total_(total),
+      left_(total, bounds),
       start_(std::chrono::steady_clock::now()),
       next_(start_),
       terminal_(::isatty(2) != 0) {}
@@ -57,27 +58,32 @@ void Progress::draw(bool last) {
   const double done = done_, share = total_ > 0 ? std::min(1.0, done / total_) : 1, seconds = this->seconds();
   const double rate = seconds > 0 ? done / seconds : 0;
   if (last) {
-    std::fprintf(stderr, "%s%s: %s in %s (%s %s/s)%s\n", terminal_ ? "\r" : "", label_.c_str(),
-                 counted(done, unit_).c_str(), human_seconds(seconds).c_str(), human_count(rate).c_str(), unit_.c_str(),
-                 terminal_ ? "\033[K" : "");
+    const std::string end = terminal_ ? "\033[K" : "";
+    std::fprintf(stderr, "%s%s: ", terminal_ ? "\r" : "", label_.c_str());
+    if (unit_.empty())
+      std::fprintf(stderr, "%s%s\n", human_seconds(seconds).c_str(), end.c_str());
+    else
+      std::fprintf(stderr, "%s in %s (%s %s/s)%s\n", counted(done, unit_).c_str(), human_seconds(seconds).c_str(),
+                   human_count(rate).c_str(), unit_.c_str(), end.c_str());
     return;
   }
-  const std::string left = share > 0 ? human_seconds(seconds * (1 - share) / share) : "?";
+  if (unit_.empty()) return;
+  left_.tell(seconds, done);
   if (terminal_) {
     if (now < next_) return;
     next_ = now + std::chrono::milliseconds(200);
     std::string bar(30, '.');
     for (int i = 0; i < static_cast<int>(30 * share); ++i) bar[i] = '#';
-    std::fprintf(stderr, "\r%s [%s] %3.0f %%  %s %s/s  %s left\033[K", label_.c_str(), bar.c_str(), 100 * share,
-                 human_count(rate).c_str(), unit_.c_str(), left.c_str());
+    std::fprintf(stderr, "\r%s [%s] %3.0f %%  %s %s/s  %s\033[K", label_.c_str(), bar.c_str(), 100 * share,
+                 human_count(rate).c_str(), unit_.c_str(), left_.text().c_str());
     std::fflush(stderr);
   } else if (const int decile = static_cast<int>(10 * share); decile > last_decile_ && decile < 10) {
     if (now < next_) return;  // short work prints one closing line only
     next_ = now + std::chrono::seconds(5);
     if (last_decile_ == 0 && seconds < 2) return;
     last_decile_ = decile;
-    std::fprintf(stderr, "%s: %d %% (%s %s/s, %s left)\n", label_.c_str(), 10 * decile, human_count(rate).c_str(),
-                 unit_.c_str(), left.c_str());
+    std::fprintf(stderr, "%s: %d %% (%s %s/s, %s)\n", label_.c_str(), 10 * decile, human_count(rate).c_str(),
+                 unit_.c_str(), left_.text().c_str());
   }
 }
 

@@ -5,12 +5,15 @@
 #include <mutex>
 #include <string>
 
+#include "base/time_left.h"
+
 namespace suite {
 
 class Progress {
  public:
-  // label: "rendering"; total: units of work; unit: "pixel". Writes to standard error unless quieted.
-  Progress(std::string label, double total, std::string unit);
+  // label: "rendering"; total: units of work; unit: "pixel", empty for work that is not counted (add() nothing; a line
+  // at its end says what it took). Writes to standard error unless quieted.
+  Progress(std::string label, double total, std::string unit, TimeLeft::Bounds bounds = {});
   ~Progress();              // finishes the line
   void add(double amount);  // from any thread
   void finish();            // idempotent; prints the closing line with total time and mean rate
@@ -22,6 +25,7 @@ class Progress {
   void draw(bool last);
   std::string label_, unit_;
   double total_;
+  TimeLeft left_;
   std::atomic<double> done_{0};
   std::chrono::steady_clock::time_point start_, next_;
   std::mutex mutex_;

@@ -298,8 +298,8 @@ std::vector<float> floats_of(const Histories& h) {
   return out;
 }
 
-void begin(const HeatProgress& progress, const char* stage, double whole) {
-  if (progress.begin) progress.begin(stage, whole);
+void begin(const HeatProgress& progress, const char* stage, double whole = 0, const char* unit = "") {
+  if (progress.begin) progress.begin(stage, whole, unit);
 }
 
 void tell_done(const HeatProgress& progress, double more) {
@@ -323,7 +323,7 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   SUITE_CHECK(exchange.faces() == scene.faces.size() && found.sun.faces() == scene.faces.size());
   SUITE_CHECK_EQ(found.sun.moments, weather.moments.size());
   check_surroundings(scene, spec);
-  begin(progress, "balance", 1);
+  begin(progress, "balance");
   const std::vector<SurfaceGroup> groups =
       surface_groups(scene.elements, scene.faces, scene.optics, exchange.emissivity);
   LoadErrors load_errors;
@@ -341,18 +341,16 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
     if (!note.empty()) result.notes.push_back(note);
   sum_balance(scene.elements, groups, loads, h, result);
   give_back_freed();
-  tell_done(progress, 1);
-  begin(progress, "errors", 1);
+  begin(progress, "errors");
   const SolvedSurfaces solved{exchange, found.sun, weather, groups, loads, h, spec.ground_albedo, lateral.neighbours};
   LinearErrors errors = linear_errors(solved, std::move(load_errors));
   result.path_error = std::move(errors.paths), result.size_error = std::move(errors.size);
   result.step_error = step_errors(solved);
-  tell_done(progress, 1);
   const bool audits = spec.audit > 0 && !stands_in_several_places(scene);
   if (spec.audit > 0 && !audits)
     result.notes.push_back("no audit is made: its walks do not go with what stands in several places");
   if (audits) {
-    begin(progress, "audit", static_cast<double>(spec.audit));
+    begin(progress, "audit", static_cast<double>(spec.audit), "probe");
     result.audit =
         audit_heat({scene.tracer, scene.elements, scene.faces, scene.optics, spec.periodic, spec.seed}, solved,
                    spec.audit, {}, [&](size_t more) { tell_done(progress, static_cast<double>(more)); });
@@ -378,10 +376,11 @@ HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const Heat
   const HeatScene scene{tracer, elements, faces, optics};
   const auto done = [&](size_t more) { tell_done(progress, static_cast<double>(more)); };
   HeatOperator found;
-  begin(progress, "exchange of infrared", static_cast<double>(faces.size()));
+  begin(progress, "exchange of infrared", static_cast<double>(faces.size()), "face");
   found.exchange = find_exchange(scene, path_options(spec), nullptr, done);
-  begin(progress, "sunlight", 2 * static_cast<double>(faces.size()));
-  found.sun = find_sunlight(scene, weather.course, path_options(spec), nullptr, done);
+  begin(progress, "sunlight", static_cast<double>(faces.size()), "face");
+  found.sun = find_sunlight(scene, weather.course, path_options(spec), nullptr,
+                            [&](size_t more) { tell_done(progress, static_cast<double>(more) / kSunStages); });
   return solve_heat(scene, std::move(found), weather, spec, progress);
 }
 

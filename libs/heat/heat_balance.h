@@ -126,7 +126,8 @@ inline PathOptions path_options(const HeatSpec& spec) {
 
 // report: is told stages and shares that are done; may be empty. Error: as its parts.
 struct HeatProgress {
-  std::function<void(const std::string& stage, double whole)> begin;
+  // whole: of `unit`, "face"; 0 of an empty unit where nothing is counted.
+  std::function<void(const std::string& stage, double whole, const std::string& unit)> begin;
   std::function<void(double more)> done;
 };
 // Error: a material that is seen has no temperature, neither by heat nor of its own. To be asked before rays are

@@ -18,8 +18,12 @@ double fourth(double kelvin) { return kelvin * kelvin * kelvin * kelvin; }
 
 }  // namespace
 
-Influence::Influence(const ExchangePaths& exchange, const HeatFaces& faces)
-    : exchange_(exchange), faces_(faces), outsides_(faces.outsides()), matrix_(exchange.matrix(faces.outsides())) {
+Influence::Influence(const ExchangePaths& exchange, const HeatFaces& faces, double hottest)
+    : exchange_(exchange),
+      faces_(faces),
+      outsides_(faces.outsides()),
+      hottest_(hottest),
+      matrix_(exchange.matrix(faces.outsides())) {
   SUITE_CHECK_EQ(exchange.faces(), faces.size());
   for (size_t f = 0; f < faces.size(); ++f) {
     element_.push_back(faces.element(f));
@@ -57,7 +61,7 @@ std::vector<double> Influence::importance(const std::vector<bool>& seen) const {
 double Influence::off_at_most(const std::vector<bool>& seen, const std::vector<bool>& kept, const Range& range,
                               std::array<double, 2> air) const {
   const size_t n = exchange_.faces();
-  const double dropped = std::max(fourth(kHottest) - fourth(air[0]), fourth(air[1]));
+  const double dropped = std::max(fourth(hottest_) - fourth(air[0]), fourth(air[1]));
   std::vector<double> off(elements_, 0.0), emitted(n + outsides_, 0.0), received(n), next(elements_);
   for (int turn = 0; turn < kTurns; ++turn) {
     for (size_t f = 0; f < n; ++f) {
@@ -69,8 +73,8 @@ double Influence::off_at_most(const std::vector<bool>& seen, const std::vector<b
     for (size_t f = 0; f < n; ++f) {
       if (!kept[element_[f]]) continue;
       const double left = fourth(range.low[f]) - received[f];
-      const double d = left > 0 ? range.low[f] - std::sqrt(std::sqrt(left)) : kHottest;
-      next[element_[f]] = std::max(next[element_[f]], std::min(d, kHottest));
+      const double d = left > 0 ? range.low[f] - std::sqrt(std::sqrt(left)) : hottest_;
+      next[element_[f]] = std::max(next[element_[f]], std::min(d, hottest_));
     }
     double change = 0;
     for (size_t e = 0; e < elements_; ++e) change = std::max(change, std::fabs(next[e] - off[e]));
@@ -78,11 +82,11 @@ double Influence::off_at_most(const std::vector<bool>& seen, const std::vector<b
     if (change < kSettled) {
       double worst = 0;
       for (size_t e = 0; e < elements_; ++e)
-        if (seen[e]) worst = std::max(worst, kept[e] ? off[e] : kHottest);
+        if (seen[e]) worst = std::max(worst, kept[e] ? off[e] : hottest_);
       return worst;
     }
   }
-  return kHottest;
+  return hottest_;
 }
 
 std::vector<bool> Influence::kept_for(const std::vector<bool>& seen, double limit, double kelvin) const {

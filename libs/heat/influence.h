@@ -4,11 +4,11 @@
 // lower temperatures (air, layers behind and neighbours only take from the difference), so that temperatures shifted
 // by d of each element bound those with all elements when what the shift radiates makes up for what more may arrive:
 //   T^4 - (T - d)^4 = sum over j of share[i][j] x[j],
-//   x = (T[j] + d[j])^4 - T[j]^4 of elements that are kept, what a surface of kHottest emits beyond the air of others,
+//   x = (T[j] + d[j])^4 - T[j]^4 of elements that are kept, what a surface of `hottest` emits beyond the air of others,
 // T the coldest of i's history, the warmest of j's. The least such d is the limit of an iteration from 0.
 //
-// Assumes: the shares that the paths found, for both; nothing is warmer than kHottest; properties of layers that do not
-// depend on temperature; diffuse surfaces in the infrared (what mirrors show is not a mean over directions).
+// Assumes: the shares that the paths found, for both; nothing is warmer than `hottest`; properties of layers that do
+// not depend on temperature; diffuse surfaces in the infrared (what mirrors show is not a mean over directions).
 #pragma once
 #include <vector>
 
@@ -18,9 +18,9 @@ namespace suite {
 
 class Influence {
  public:
-  static constexpr double kHottest = 450;  // K
-  // exchange: of all faces. Keeps references.
-  Influence(const ExchangePaths& exchange, const HeatFaces& faces);
+  // exchange: of all faces. hottest: K, what nothing that is left out is warmer than. Keeps references.
+  Influence(const ExchangePaths& exchange, const HeatFaces& faces, double hottest);
+  double hottest() const { return hottest_; }
 
   // K, coldest and warmest of a span, by face of all.
   struct Range {
@@ -29,7 +29,7 @@ class Influence {
   // By element, whether it is kept, the fewest found: all that are seen, and what keeps off_at_most() within the limit
   // (K) when all temperatures are near one (K).
   std::vector<bool> kept_for(const std::vector<bool>& seen, double limit, double kelvin) const;
-  // K, of the elements that are seen; kHottest where there is no bound. air: coldest and warmest, K. Of elements that
+  // K, of the elements that are seen; hottest() where there is no bound. air: coldest and warmest, K. Of elements that
   // are left out ranges do not matter.
   double off_at_most(const std::vector<bool>& seen, const std::vector<bool>& kept, const Range& range,
                      std::array<double, 2> air) const;
@@ -40,6 +40,7 @@ class Influence {
   const HeatFaces& faces_;
   std::vector<uint32_t> element_;  // by face
   size_t elements_ = 0, outsides_;
+  double hottest_;
   ExchangeMatrix matrix_;
 };
 

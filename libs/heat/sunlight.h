@@ -90,6 +90,7 @@ Sunlight untraced_sunlight(const Elements& elements, const HeatFaces& faces, con
 
 // The straight sun of all faces comes first, then what is scattered, of faces and of rows after them.
 enum class SunStage { straight, scattered };
+inline constexpr int kSunStages = 2;
 // joins: moments that a path is joined to at each surface.
 inline constexpr uint32_t kSunJoins = 4;
 // Traces that of some rows, as ranges of trace_exchange() are; straight of faces alone. In parallel, the same on any

@@ -172,11 +172,11 @@ class StateBins {
 class StateInAir {
  public:
   StateInAir(const Scene& scene, std::span<const SourceSpecs> sources, const Sensor& sensor, size_t state,
-             bool white_light)
+             bool white_light, FoundHeat found)
       : air_(*sources[0].air),
         state_(sensor.states()[state]),
         bands_(sensor.bands(state)),
-        seen_(spectra_of(scene, sources, bands_)),
+        seen_(spectra_of(scene, sources, bands_, found)),
         paths_(sources, sensor, state),
         without_gases_(state_, bands_, seen_, white_light),
         white_light_(white_light) {}
@@ -274,7 +274,8 @@ void add_biases(std::span<const BinReport> reports, BandBiases& to) {
     if (!reports[s].bias.empty()) to[{reports[s].sensor, s}] = reports[s].bias;
 }
 
-std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor) {
+std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor,
+                                   FoundHeat found) {
   bool white_light = false;
   for (const Task& t : sensor.tasks())
     for (const Capture& c : t.captures) white_light = white_light || c.bin_by == Capture::BinBy::sun;
@@ -282,13 +283,13 @@ std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpe
   for (size_t s = 0; s < sensor.states().size(); ++s) {
     const SpectralState state = sensor.states()[s];
     if (!sources.empty() && sources[0].air) {
-      StateInAir in_air(scene, sources, sensor, s, white_light);
+      StateInAir in_air(scene, sources, sensor, s, white_light, found);
       SpectralState made = in_air.make();
       reports.push_back(in_air.report(sensor.name(), made));
       sensor.take_state(s, std::move(made));
       continue;
     }
-    StateBins bins(state, sensor.bands(s), spectra_of(scene, sources, sensor.bands(s)), white_light);
+    StateBins bins(state, sensor.bands(s), spectra_of(scene, sources, sensor.bands(s), found), white_light);
     if (state.choice.error > 0) {
       SpectralState chosen = bins.choose();
       reports.push_back(bins.report(sensor.name(), chosen.size()));

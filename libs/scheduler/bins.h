@@ -46,7 +46,10 @@ struct BinReport {
 void add_biases(std::span<const BinReport> reports, BandBiases& to);
 
 // Gives every state of a sensor that asks for it bins for what it sees of the scene. sources: resolved; several when
-// they change with time. One report a state. Error: a source whose spectrum does not cover the bands.
-std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor);
+// they change with time. found: of surfaces that wait for the balance of heat; they are taken to stay below
+// kSimulatedBelow as long as it is not known. One report a state. Error: a source whose spectrum does not cover the
+// bands.
+std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor,
+                                   FoundHeat found = {});
 
 }  // namespace suite

@@ -1,4 +1,7 @@
 // What a job will run and take, before it begins.
+#include <algorithm>
+
+#include "scheduler/forecast.h"
 #include "scheduler/items.h"
 #include "scheduler/scheduler.h"
 
@@ -36,6 +39,24 @@ double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
                    }
                });
   return sum;
+}
+
+bool paths_are_fixed(Sensors sensors, const JobOptions& options) {
+  bool fixed = true;
+  for_captures(sensors, options,
+               [&](const Sensor& s, const Capture& c, const Budget& budget, const std::vector<uint8_t>&) {
+                 const Goals goals = goals_of(s, c, budget);
+                 fixed = fixed && !(goals.all.relative_error > 0) &&
+                         std::ranges::none_of(goals.own, [](const Convergence& g) { return g.relative_error > 0; });
+               });
+  return fixed;
+}
+
+std::unique_ptr<Progress> begin_progress(Sensors sensors, const JobOptions& options, double spent) {
+  TimeLeft::Bounds bounds;
+  if (!paths_are_fixed(sensors, options)) bounds.total = TimeLeft::Total::least;
+  if (options.budget.seconds > 0) bounds.seconds = options.budget.seconds - spent;
+  return std::make_unique<Progress>("rendering", forecast_paths(sensors, options), "path", bounds);
 }
 
 double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {

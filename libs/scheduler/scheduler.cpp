@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
-#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "estimate/plan.h"
+#include "scheduler/forecast.h"
 #include "scheduler/in_flight.h"
 #include "scheduler/items.h"
 #include "scheduler/judge.h"
@@ -77,8 +77,7 @@ class Job {
     std::vector<SentRound> none;
     exchange(executor(), none, cap_);
     for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
-    if (options_.progress)
-      progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
+    if (options_.progress) progress_ = begin_progress(sensors_, options_, seconds_since(start_));
     saving_.store = options_.store;
     if (!before.empty()) run_all(before, {.pending = true});
     report_.stopped = executor().any(report_.stopped);

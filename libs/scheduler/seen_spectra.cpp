@@ -6,24 +6,30 @@
 #include "optics/models.h"
 #include "scheduler/seen_lights.h"
 #include "spectral/planck.h"
+#include "thermal/models.h"
 
 namespace suite {
 
 namespace {
 
-constexpr double kSimulated = 400;  // K: what simulated surfaces stay below unless they are told otherwise
+double radiates(double flux) { return std::pow(flux / kStefanBoltzmann, 0.25); }  // W/m2 -> K
 
-// The highest temperature that a simulated surface is given, or that its loads could hold it at. K.
+// The highest temperature that a simulated surface is given, or that its loads can hold it at; neighbours are not
+// counted. K. What it absorbs leaves by radiation and to the air, and either alone is enough.
 double hottest_of(const TemperatureSpec& spec) {
-  double most = 0;
-  for (const auto& [name, value] : spec.numbers)
-    if (name.ends_with("_k")) most = std::max(most, value);
-  const auto held_at = [](double flux) { return std::pow(std::max(0.0, flux) / kStefanBoltzmann, 0.25); };
-  if (const auto source = spec.numbers.find("source_w_m2"); source != spec.numbers.end())
-    most = std::max(most, held_at(source->second));
-  for (const SurfaceLoad& load : spec.loads)
-    most = std::max({most, load.air_temperature, held_at(load.sun_absorbed + load.sky_irradiance)});
-  return most;
+  constexpr double kMost = 1e4;  // that a slab may have
+  double most = hottest_given(spec);
+  const auto still = spec.numbers.find("convection_still_w_m2_k");
+  for (const SurfaceLoad& load : spec.loads) {
+    const double absorbed = load.sun_absorbed + inner_power(spec),
+                 around = std::max(radiates(load.sky_irradiance), load.air_temperature);
+    most = std::max(most, around);
+    if (!(absorbed > 0)) continue;
+    const double by_radiation = radiates(absorbed / emissivity_of(spec) + load.sky_irradiance),
+                 by_air = still == spec.numbers.end() ? INFINITY : around + absorbed / still->second;
+    most = std::max(most, std::min(by_radiation, by_air));
+  }
+  return std::min(most, kMost);
 }
 
 using Rows = std::vector<std::vector<float>>;
@@ -71,7 +77,7 @@ class Gatherer {
   }
 
   // What warm surfaces and media emit.
-  void temperatures() {
+  void temperatures(FoundHeat heat) {
     std::vector<double> kelvins;
     const auto ladder = [&](double low, double high) {
       constexpr int kSteps = 4;
@@ -88,8 +94,9 @@ class Gatherer {
         ladder(*std::min_element(t.spec.kelvins.begin(), t.spec.kelvins.end()),
                *std::max_element(t.spec.kelvins.begin(), t.spec.kelvins.end()));
       else if (!t.spec.model.empty()) {
-        ladder(200, kSimulated);
-        if (const double hottest = hottest_of(t.spec); hottest > kSimulated) ladder(kSimulated, hottest);
+        ladder(200, kSimulatedBelow);
+        const double hottest = std::max(hottest_of(t.spec), t.spec.loads.empty() ? heat.hottest : 0.0);
+        if (hottest > kSimulatedBelow) ladder(kSimulatedBelow, hottest);
       }
     }
     const auto of_values = [&](const std::vector<float>& values) {
@@ -261,10 +268,10 @@ class Gatherer {
 }  // namespace
 
 std::vector<SeenSpectra> spectra_of(const Scene& scene, std::span<const SourceSpecs> sources,
-                                    std::span<const Band> bands) {
+                                    std::span<const Band> bands, FoundHeat heat) {
   Gatherer g(scene, bands);
   for (const SourceSpecs& s : sources) add_lights(s, g.found);
-  g.temperatures();
+  g.temperatures(heat);
   g.materials();
   g.media();
   return std::move(g.found);

@@ -31,12 +31,21 @@ struct SeenSpectra {
   std::function<std::vector<std::vector<float>>(const SpectralState&)> unabsorbed = nullptr;
 };
 
+// Kelvin that the balance of heat found for surfaces that wait for it.
+struct FoundHeat {
+  double hottest = 0;  // 0: not found (yet)
+};
+
+// K: what simulated surfaces are taken to stay below until more is known of them.
+inline constexpr double kSimulatedBelow = 400;
+
 // Of a scene under some sources (resolved; several when they change with time) for the bands of one state. Only what
 // changes with wavelength: constants are left out. Keeps references to scene and sources. What stands in for the rest:
 // models whose curves enter in another way than as a factor, and phase functions, are asked at a few directions at 200
 // wavelengths; of tabulated skies and of spectral maps some places are taken; media and atmospheres are taken at some
-// depths and along some paths; temperatures that are simulated, at some from 200 to 400 K.
+// depths and along some paths; temperatures that are simulated, at some from 200 to 400 K, and on to what a surface's
+// own loads can hold it at and to what was found.
 std::vector<SeenSpectra> spectra_of(const Scene& scene, std::span<const SourceSpecs> sources,
-                                    std::span<const Band> bands);
+                                    std::span<const Band> bands, FoundHeat heat = {});
 
 }  // namespace suite

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/named_numbers.h"
+#include "spectral/planck.h"
 #include "thermal/models/rows.h"
 
 namespace suite {
@@ -45,6 +46,33 @@ std::unique_ptr<const TemperatureModel> make_temperature_model(const Temperature
     if (!e.where().file.empty()) throw;
     throw Error(where, e.message(), e.hint(), e.code());
   }
+}
+
+namespace {
+
+double number_of(const TemperatureSpec& spec, const char* name, double otherwise) {
+  const auto at = spec.numbers.find(name);
+  return at == spec.numbers.end() ? otherwise : at->second;
+}
+
+}  // namespace
+
+double inner_power(const TemperatureSpec& spec) {
+  return std::max(0.0, number_of(spec, "source_w_m2", 0)) + std::max(0.0, number_of(spec, "deep_flux_w_m2", 0));
+}
+
+double emissivity_of(const TemperatureSpec& spec) { return number_of(spec, "emissivity", 0.95); }
+
+double hottest_given(const TemperatureSpec& spec) {
+  double most = 0;
+  if (!spec.model.empty())
+    for (const Parameter& p : temperature_models().find(spec.model).parameters)
+      if (p.unit == "K") most = std::max(most, number_of(spec, p.name.c_str(), 0));
+  for (const double kelvin : spec.kelvins) most = std::max(most, kelvin);
+  constexpr double kMost = 1e4;  // that a slab may have
+  const double power = inner_power(spec);
+  if (power > 0) most = std::max(most, std::pow(power / (emissivity_of(spec) * kStefanBoltzmann), 0.25));
+  return std::min(most, kMost);
 }
 
 namespace {

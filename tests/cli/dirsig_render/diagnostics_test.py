@@ -43,8 +43,25 @@ world:
   - {place: yard}
   - {place: wall}
 """
-# Provoked by no test: elements that are left out and hotter than 450 K, of which paths still bring something.
-NOT_PROVOKED = [f"DR{602}"]
+# A wide yard that air does not warm, under a sky far colder than the air: elements that are left out are put as warm as
+# the air, and what is in view is much colder.
+COLD_YARD = """scene: 1
+origin: {latitude_deg: 39.83, longitude_deg: -104.65, height_m: 1650}
+materials:
+  concrete:
+    model: lambert
+    reflectance: {points: [[0.4, 0.2], [0.7, 0.3], [4, 0.1], [30, 0.1]], outside: hold}
+    thermal: {thickness_m: 0.002, density_kg_m3: 2300, specific_heat_j_kg_k: 900, conductivity_w_m_k: 1.4}
+    temperature: {model: heat, convection: none}
+objects:
+  yard: {plane: {width: 20, depth: 20}, material: concrete}
+  wall: {box: {x0: 8, y0: -1, z0: 0, x1: 9, y1: 1, z1: 3}, material: concrete}
+world:
+  - {place: yard}
+  - {place: wall}
+"""
+# Provoked by no test.
+NOT_PROVOKED = []
 SUN = "sun: {direction: {zenith_deg: 40, azimuth_deg: 90}, irradiance: 1000}\n"
 RED = "[{name: red, center_um: 0.6, fwhm_um: 0.05, shape: rectangular}]"
 WARM = "[{name: warm, center_um: 10, fwhm_um: 1, shape: rectangular}]"
@@ -66,7 +83,8 @@ class Diagnostics(unittest.TestCase):
         shutil.rmtree(FOLDER, ignore_errors=True)
         FOLDER.mkdir(parents=True)
         shutil.copy(SOURCES / "sample_scenes/summer_street/denver_july.epw", FOLDER / "denver.epw")
-        for name, text in (("scene", SCENE), ("cold", SCENE.replace("    temperature: {model: constant, kelvin: 300}\n", "")), ("roof", ROOF)):
+        for name, text in (("scene", SCENE), ("cold", SCENE.replace("    temperature: {model: constant, kelvin: 300}\n", "")), ("roof", ROOF),
+                           ("yard", COLD_YARD), ("mild", COLD_YARD.replace("convection: none", "convection: mcadams"))):
             (FOLDER / f"{name}.yaml").write_text(text)
             cls.run_program("scene-prep", f"{name}.yaml", "-o", f"{name}.h5", "-q")
 
@@ -104,6 +122,22 @@ class Diagnostics(unittest.TestCase):
         self.expect("DR603", heat(), scene="roof", out="found")  # media are passed by
         self.expect("DR604", heat(", paths: 8, from: 2001-07-14T07:00:00Z, to: 2001-07-15T13:00:00Z"), "--heat", "found/heat.h5", scene="roof")
         self.expect("DR605", heat())
+
+    def test_of_elements_that_are_left_out(self):
+        rows = (FOLDER / "denver.epw").read_text().split("\n")
+        for k, row in enumerate(rows[8:], 8):
+            if words := row.strip() and row.split(","):
+                words[12:16] = ["40", "0", "0", "0"]  # W/m2 of the sky's infrared; no sun
+                rows[k] = ",".join(words)
+        (FOLDER / "cold.epw").write_text("\n".join(rows))
+        asked = heat(", paths: 64, elements_by: area, influence_cutoff_k: CUTOFF").replace("elements: 12", "elements: 200")
+        asked = asked.replace("denver.epw", "cold.epw")
+        said = self.expect("DR602", asked.replace("CUTOFF", "0.01"), "--heat-only", scene="yard")
+        self.assertIn("elements that are left out matter by more than the 0.01 K", said)
+        self.assertRegex(said, r"elements are left out, \d+ are in view and within 0\.0\d+ K")
+        self.assertIn("has no bound here", self.expect("DR602", asked.replace("CUTOFF", "0.1"), "--heat-only", scene="yard"))
+        # Where air keeps the yard about as warm as it is: the negative control.
+        self.assertNotIn("[DR602]", self.said(asked.replace("CUTOFF", "0.01"), "--heat-only", scene="mild"))
 
     def test_of_imports(self):
         shutil.copytree(SOURCES / "tests/data/dirsig", FOLDER / "dirsig")

@@ -124,7 +124,11 @@ TEST_F(SummerStreet, WhatIsMissingIsToldAtItsPlace) {
   EXPECT_THAT(r.err, HasSubstr("elements"));
   r = run("dirsig-render sim.yaml -o out -q --set sensors.0.time_s=-3600");
   EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("lie on both sides of one, at 2001-07-14T06:59:00Z"));
+  r = run("dirsig-render sim.yaml -o out -q --set sensors.0.time_s=-90000");
+  EXPECT_EQ(r.code, 1);
   EXPECT_THAT(r.err, HasSubstr("more than one day of temperatures"));
+  EXPECT_THAT(r.err, HasSubstr("'from: 2001-07-12T06:59:00Z, to: "));
   // A material nobody gave a temperature.
   change("scene.yaml",
          "    temperature: {model: heat, convection: tarp, back: air, back_k: 305, back_film_w_m2_k: 1}\n", "");

@@ -132,6 +132,25 @@ def textured_box():
     return path
 
 
+# A triangle of one material.
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="meter" meter="1"/><up_axis>Z_UP</up_axis></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="common"><phong>EFFECT</phong></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m" name="red"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g" name="g"><mesh>
+<source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>
+</technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="s"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="w"><node id="n"><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="s" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#w"/></scene>
+</COLLADA>
+"""
+
+
 class Whole(int):
     """A number of 32 bits."""
 
@@ -372,6 +391,20 @@ class Models(unittest.TestCase):
         self.assertEqual(code, 0, said)
         self.assertIn("its texture is uplifted to spectra", said)
         self.assertIn("1 materials are matte with reflectances uplifted from display colours, 1 of them from textures", said)
+
+    def test_looks_that_are_left_out(self):
+        """What a material of Collada says beyond its colour is told in one line; a plain one is not told."""
+        def said_of(effect):
+            with open(WORK + "/look.dae", "w", encoding="utf-8") as f:
+                f.write(COLLADA.replace("EFFECT", effect))
+            code, said = prepare(WORK + "/look.dae")
+            self.assertEqual(code, 0, said)
+            return said
+        plain = "<diffuse><color>0.8 0.1 0.1 1</color></diffuse>"
+        said = said_of("<emission><color>1 0 0 1</color></emission>" + plain + "<transparency><float>0.5</float></transparency>")
+        self.assertIn("left out of how surfaces look: transparency of 1 material (an 'opacity' map makes holes), "
+                      "emission of 1 material (temperatures and lamps shine)", said)
+        self.assertNotIn("left out of how surfaces look", said_of("<emission><color>0 0 0 1</color></emission>" + plain))
 
     def test_warnings_of_200_objects(self):
         """Each object has a triangle without area, one has three: told once, with the worst."""

@@ -102,6 +102,11 @@ TEST_F(SqtInspect, ValuesSlicesAndSamples) {
   const CommandResult beyond = run_command(kInspect + ward_ + " --eval 30,0,50,180,10");
   EXPECT_EQ(beyond.code, 0) << beyond.err;
   EXPECT_THAT(beyond.err, testing::HasSubstr("at 10 um the value at its nearer end is printed"));
+  // Channels of colours descend; at their ends and between them nothing is beyond.
+  for (const char* um : {"0.65", "0.55", "0.45"})
+    EXPECT_EQ(run_command(kInspect + satin_ + " --eval 30,0,50,180," + um).err, "") << um;
+  EXPECT_THAT(run_command(kInspect + satin_ + " --eval 30,0,50,180,0.7").err,
+              testing::HasSubstr("the fit stands for 0.45 to 0.65 um"));
   ASSERT_EQ(e.code, 0) << e.err;
   const auto model = model_function("ward:specular=0.3,diffuse=0.2,roughness=0.2");
   double f = 0;

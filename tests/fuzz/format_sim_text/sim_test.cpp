@@ -97,4 +97,40 @@ TEST(FuzzSim, Platform) {
       [&](std::span<const std::byte> b) { read(folder, b); }, 2, test::kMutations, kWords);
 }
 
+// The night sky, arrays with detectors that count photons, Stokes vectors behind an analyser, a laser radar.
+TEST(FuzzSim, NightSkyAndDetectors) {
+  const std::string array =
+      "integration_time_s: 0.0005, paths: {min: 16, detector_noise: 0.3}, columns: 4, rows: 4, pitch_um: 80, bands: "
+      "[{name: "
+      "pan, center_um: 0.7, fwhm_um: 0.4, shape: rectangular}], ";
+  const std::string text =
+      "scene: scene.h5\nepoch: 2026-01-16T04:00:00Z\nnight_sky: {scale: {airglow: 1.3, zodiacal: 0.5}, stars: {}}\n"
+      "moon: {direction: {time_utc: 2026-01-16T04:00:00Z}}\natmosphere: {profile: us_standard, scattering: traced}\n"
+      "sensors:\n  - kind: platform\n    name: yard\n    motion: {kind: static, position_m: [0, 0, 100]}\n    tasks: "
+      "[{start: 0}]\n"
+      "    instruments:\n      - focal_length_mm: 20\n        f_number: 1.4\n        arrays:\n"
+      "          - {name: emccd, " +
+      array +
+      "detector: {kind: emccd, quantum_efficiency: 0.9, em_gain: 300, read_noise_e: 50, clock_induced_e: 0.005, "
+      "gain_e_per_dn: 20}}\n          - {name: spad, " +
+      array +
+      "detector: {kind: spad, quantum_efficiency: 0.4, fill_factor: 0.6, frames: 15, dark_rate_hz: 100, crosstalk: "
+      "0.01}}\n          - {name: tube, " +
+      array +
+      "detector: {kind: intensifier, quantum_efficiency: 0.4, gain_e: 300, gain_e_per_dn: 4, halo: {share: 0.03, "
+      "radius_um: 500}, phosphor: {blur_um: 60}, background_lx: 2.0e-7}}\n"
+      "  - {kind: frame_camera, name: p, columns: 4, rows: 3, pitch_um: 5, focal_length_mm: 9, position_m: [0, 0, 60], "
+      "look_at_m: [0, 0, 0], stokes: linear, analyser: {polarizer_deg: 30, extinction: 1000}, " +
+      kBands +
+      "}\n  - {kind: lidar, name: als, position_m: [0, 0, 100], look_at_m: [10, 0, 0], laser: {wavelength_um: 1.064, "
+      "pulse_energy_j: 1.5e-4, rate_hz: 1000, beam: {kind: gaussian, waist_mm: 2, m2: 2}}, receiver: {aperture_mm: "
+      "150, "
+      "array: {columns: 4, rows: 2, pitch_um: 50, focal_length_mm: 400}}, gate: {start_m: 9, stop_m: 110, bin_ns: "
+      "0.5}, tasks: [{start: 0, pulses: 5}]}\n";
+  const TempFolder folder;
+  ASSERT_NO_THROW(read(folder, test::bytes_of(text)));  // what is damaged is whole at first
+  test::fuzz(
+      test::bytes_of(text), [&](std::span<const std::byte> b) { read(folder, b); }, 3, test::kMutations, kWords);
+}
+
 }  // namespace suite

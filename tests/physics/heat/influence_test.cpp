@@ -51,7 +51,7 @@ TEST(Influence, WhatIsSeenStaysWithinTheBound) {
   for (auto* light : {&night.direct, &night.diffuse, &night.global}) std::fill(light->begin(), light->end(), 0.0);
 
   const ExchangePaths exchange = kit.exchange(path_options(spec));
-  const Influence influence(exchange, *kit.faces);
+  const Influence influence(exchange, *kit.faces, 450);
   std::vector<bool> seen;
   for (size_t e = 0; e < kit.elements->size(); ++e) seen.push_back((*kit.elements)[e].material == 0);
   const auto [cold, warm] = std::ranges::minmax(night.air_kelvin);
@@ -99,6 +99,24 @@ TEST(Influence, WhatIsSeenStaysWithinTheBound) {
   EXPECT_GE(alone_bound, alone);
 }
 
+// What is left out may be hotter than weather makes it: the bound follows.
+TEST(Influence, BoundsWhatIsHotter) {
+  const HeatKit kit(yard_and_more(), kBudget);
+  HeatSpec spec;
+  spec.paths = 64;
+  const ExchangePaths exchange = kit.exchange(path_options(spec));
+  std::vector<bool> seen;
+  for (size_t e = 0; e < kit.elements->size(); ++e) seen.push_back((*kit.elements)[e].material == 0);
+  const Influence::Range near{std::vector<double>(exchange.faces(), 292), std::vector<double>(exchange.faces(), 292)};
+  const Influence weather(exchange, *kit.faces, 450), engine(exchange, *kit.faces, 600);
+  const std::vector<bool> kept = weather.kept_for(seen, 0.003, 292);
+  const double by_weather = weather.off_at_most(seen, kept, near, {292, 292}),
+               by_engine = engine.off_at_most(seen, kept, near, {292, 292});
+  std::printf("%.5f K if nothing is warmer than 450 K, %.5f K if 600\n", by_weather, by_engine);
+  EXPECT_LE(by_weather, 0.003);
+  EXPECT_GT(by_engine, 3 * by_weather);  // 600^4 - 292^4 over 450^4 - 292^4 is 3.6
+}
+
 // What is seen is kept, whatever matters as much and has a lower number; and no bound holds where it is not. A small
 // plate under a wide ceiling: by their areas the ceiling takes all that the plate gives.
 TEST(Influence, WhatIsSeenIsKept) {
@@ -110,7 +128,7 @@ TEST(Influence, WhatIsSeenIsKept) {
   HeatSpec spec;
   spec.paths = 1024;
   const ExchangePaths exchange = kit.exchange(path_options(spec));
-  const Influence influence(exchange, *kit.faces);
+  const Influence influence(exchange, *kit.faces, 450);
   std::vector<bool> seen, others;
   for (size_t e = 0; e < kit.elements->size(); ++e) {
     seen.push_back((*kit.elements)[e].material == plate);
@@ -124,7 +142,7 @@ TEST(Influence, WhatIsSeenIsKept) {
     for (size_t e = 0; e < seen.size(); ++e) EXPECT_TRUE(kept[e] || !seen[e]) << e << " for " << limit << " K";
   }
   const Influence::Range near{std::vector<double>(exchange.faces(), 290), std::vector<double>(exchange.faces(), 290)};
-  EXPECT_EQ(influence.off_at_most(seen, others, near, {290, 290}), Influence::kHottest);
+  EXPECT_EQ(influence.off_at_most(seen, others, near, {290, 290}), 450);
 }
 
 }  // namespace

@@ -155,35 +155,66 @@ TEST(GasBins, LightsThatAreTooDarkToMatterHaveAnError) {
   }
 }
 
-// Slabs whose loads hold them at 1500 K, in the visible; the bins of what stays below 400 K are the negative control.
-TEST(GasBins, SlabsThatAreHot) {
+// How far the emission of 1500 K is off in the visible, by the bins for a surface of some temperature model; beside a
+// light of one colour what is below 400 K is too dark to matter.
+double off_at_1500(const TemperatureSpec& spec, FoundHeat heat = {}) {
   const std::vector<Band> bands{Band::rectangular("b", 0.55, 0.1)};
   ModelSpec model;
   model.model = "lambert";
   model.curves["reflectance"] = Curve::constant(0.3);
-  const auto off = [&](double kelvin) {
-    Scene scene = *test::scene_of({test::quad(1, 0, 0)}, {test::material("engine", model)});
-    TemperatureBinding binding;
-    binding.material = 0, binding.spec.model = "slab";
-    binding.spec.loads = {{0, kStefanBoltzmann * std::pow(kelvin, 4), kelvin, 2}};
-    scene.temperatures.push_back(binding);
-    SourceSpecs lit;  // beside a light of one colour what is below 400 K is too dark to matter
-    lit.add(SunSpec{{{0.6, 0, 0.8}, 0.00465, Curve::constant(1000)}});
-    auto air = std::make_shared<AirSpec>(summer());
-    air->gases = nullptr, air->molecules = false, air->aerosol.reset();
-    lit.air = air;
-    test::BinSensor sensor({{{0, 0, 9}, {0, 0, -1}, 0}}, bands, 16, 1e-3);
-    choose_bins(scene, {&lit, 1}, sensor);
-    const std::vector<float> chosen = blackbody_means(sensor.state().bins, 1500);
-    const BandProjection projection(sensor.state(), bands);
-    double mean = 0;
-    for (size_t i = 0; i < chosen.size(); ++i) mean += projection.weight(0, i) * double{chosen[i]};
-    return std::fabs(mean / (planck_band_radiance(0.5, 0.6, 1500) / 0.1) - 1);
-  };
-  const double hot = off(1500), cool = off(300);
+  Scene scene = *test::scene_of({test::quad(1, 0, 0)}, {test::material("engine", model)});
+  scene.temperatures.push_back({0, spec});
+  SourceSpecs lit;
+  lit.add(SunSpec{{{0.6, 0, 0.8}, 0.00465, Curve::constant(1000)}});
+  auto air = std::make_shared<AirSpec>(summer());
+  air->gases = nullptr, air->molecules = false, air->aerosol.reset();
+  lit.air = air;
+  test::BinSensor sensor({{{0, 0, 9}, {0, 0, -1}, 0}}, bands, 16, 1e-3);
+  choose_bins(scene, {&lit, 1}, sensor, heat);
+  const std::vector<float> chosen = blackbody_means(sensor.state().bins, 1500);
+  const BandProjection projection(sensor.state(), bands);
+  double mean = 0;
+  for (size_t i = 0; i < chosen.size(); ++i) mean += projection.weight(0, i) * double{chosen[i]};
+  return std::fabs(mean / (planck_band_radiance(0.5, 0.6, 1500) / 0.1) - 1);
+}
+
+TemperatureSpec slab_under(const SurfaceLoad& load, double emissivity = 0.95, double still = 0) {
+  TemperatureSpec spec;
+  spec.model = "slab";
+  spec.numbers = {{"emissivity", emissivity}, {"convection_still_w_m2_k", still}};
+  spec.loads = {load};
+  return spec;
+}
+
+double flux_of(double kelvin) { return kStefanBoltzmann * std::pow(kelvin, 4); }
+
+// Slabs whose loads hold them at 1500 K; the bins of what stays below 400 K are the negative control.
+TEST(GasBins, SlabsThatAreHot) {
+  const double hot = off_at_1500(slab_under({0, flux_of(1500), 1500, 2})),
+               cool = off_at_1500(slab_under({0, flux_of(300), 300, 2}));
   std::printf("%.3g %% off; by bins for 400 K %.3g %%\n", 100 * hot, 100 * cool);
   EXPECT_LT(hot, 1e-3);
   EXPECT_GT(cool, 3e-3);
+}
+
+// A surface that emits little becomes as hot by less sunlight, but where air cools it (the negative control).
+TEST(GasBins, SlabsThatEmitLittleAreHot) {
+  const SurfaceLoad sunlit{0.02 * flux_of(1500), 0, 280, 0};
+  const double hot = off_at_1500(slab_under(sunlit, 0.02)), cooled = off_at_1500(slab_under(sunlit, 0.02, 500));
+  std::printf("%.3g %% off; by bins for what air cools %.3g %%\n", 100 * hot, 100 * cooled);
+  EXPECT_LT(hot, 1e-3);
+  EXPECT_GT(cooled, 3e-3);
+}
+
+// Walls that neighbours heat: bins follow the temperatures that the balance found.
+TEST(GasBins, WallsThatNeighboursHeat) {
+  TemperatureSpec wall;
+  wall.model = "heat";
+  wall.numbers = {{"back_film_w_m2_k", 2000}};  // no temperature
+  const double followed = off_at_1500(wall, {1500}), before = off_at_1500(wall);
+  std::printf("%.3g %% off; by bins before temperatures are found %.3g %%\n", 100 * followed, 100 * before);
+  EXPECT_LT(followed, 1e-3);
+  EXPECT_GT(before, 3e-3);
 }
 
 // What the report says of each band holds, and bands that are far off are named by wavelength.

@@ -145,11 +145,66 @@ TEST(Gltf, TellsWhatItLeavesOut) {
       R"(,"materials":[{"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,0.1,1]}}],
       "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],"extensionsUsed":["XX_made_up"])")));
   const std::string text = r.report.text();
-  for (const char* part : {"1 primitives of points or lines", "XX_made_up: unknown here", "1 cameras", "seen through"})
+  for (const char* part : {"1 primitives of points or lines", "XX_made_up: unknown here", "1 cameras",
+                           "left out of how surfaces look: transparency of 1 material (an 'opacity' map makes holes), "
+                           "one-sidedness of 1 material"})
     EXPECT_THAT(text, HasSubstr(part));
   EXPECT_EQ(r.model.meshes[0].mesh.runs[0].material, "material_0");
   ASSERT_EQ(r.model.materials.size(), 1u);
   EXPECT_DOUBLE_EQ(r.model.materials[0].rgb[1], 0.25);
+}
+
+// A square laid out by a second set of texture coordinates and a transform of them.
+struct LaidOut {
+  std::string extension, attributes = R"("POSITION":0,"TEXCOORD_0":1,"TEXCOORD_1":2)", set = R"(,"texCoord":1)";
+  std::string text() const {
+    test::GltfFile f;
+    f.places(kSquare);
+    f.floats({0, 0, 0, 0, 0, 0, 0, 0}, "VEC2", 2);
+    f.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+    const int image = f.view(std::vector<char>(4));
+    return f.text(one_node(
+        R"({"attributes":{)" + attributes + R"(},"mode":6,"material":0})", "",
+        R"(,"materials":[{"doubleSided":true,"pbrMetallicRoughness":{"baseColorTexture":{"index":0)" + set +
+            (extension.empty() ? "" : R"(,"extensions":{"KHR_texture_transform":)" + extension + "}") +
+            R"(}}}],"extensionsUsed":["KHR_texture_transform"],"textures":[{"source":0}],"images":[{"bufferView":)" +
+            std::to_string(image) + R"(,"mimeType":"image/png"}])"));
+  }
+};
+
+SourceModelOptions textured() {
+  SourceModelOptions how{.name = "m", .where = {}};
+  how.textures = true;
+  return how;
+}
+
+// The example of the extension's text: the lower left quarter of the image, turned by a quarter. In the file v counts
+// downwards, so that this is u from 0 to 0.5 and v from 0.5 to 1 there, and 0 to 0.5 here.
+TEST(Gltf, TexturesAreScaledTurnedAndMoved) {
+  const Read r(LaidOut{R"({"offset":[0,1],"rotation":1.57079632679,"scale":[0.5,0.5]})"}.text(), textured());
+  // (0, 0), (1, 0), (1, 1), (0, 1) of the file become (0, 1), (0, 0.5), (0.5, 0.5), (0.5, 1).
+  const std::vector<float> expected{0, 0, 0, 0.5, 0.5, 0.5, 0.5, 0};
+  ASSERT_EQ(r.model.meshes[0].mesh.uvs.size(), 8u);
+  for (size_t k = 0; k < 8; ++k) EXPECT_NEAR(r.model.meshes[0].mesh.uvs[k], expected[k], 1e-6) << k;
+  EXPECT_TRUE(r.report.text().empty() || r.report.text().find("KHR_texture_transform") == std::string::npos);
+  // Scaled before it is turned.
+  const Read wide(LaidOut{R"({"rotation":1.57079632679,"scale":[4,2]})"}.text(), textured());
+  EXPECT_NEAR(wide.model.meshes[0].mesh.uvs[2], 0, 1e-6);
+  EXPECT_NEAR(wide.model.meshes[0].mesh.uvs[3], 1 + 4, 1e-6);
+}
+
+TEST(Gltf, TexturesAreLaidOutByTheirOwnCoordinates) {
+  const std::vector<float> first{0, 1, 0, 1, 0, 1, 0, 1}, second{0, 1, 1, 1, 1, 0, 0, 0};
+  EXPECT_EQ(Read(LaidOut{}.text(), textured()).model.meshes[0].mesh.uvs, second);
+  EXPECT_EQ(Read(LaidOut{}.text()).model.meshes[0].mesh.uvs, first) << "no images are asked for";
+  // The extension has the last word.
+  EXPECT_EQ(Read(LaidOut{R"({"texCoord":0})"}.text(), textured()).model.meshes[0].mesh.uvs, first);
+  const Read lacking(LaidOut{"", R"("POSITION":0,"TEXCOORD_0":1)"}.text(), textured());
+  EXPECT_EQ(lacking.model.meshes[0].mesh.uvs, first);
+  EXPECT_THAT(lacking.report.text(), HasSubstr("laid out by: TEXCOORD_0 is taken"));
+  for (const char* wrong : {R"({"offset":[0]})", R"({"scale":["a",1]})", R"({"rotation":[1,2]})", R"({"texCoord":-1})",
+                            R"({"offset":[1e300,0]})"})
+    EXPECT_THAT(message_of([&] { Read(LaidOut{wrong}.text(), textured()); }), HasSubstr("baseColorTexture")) << wrong;
 }
 
 // `inverseBindMatrices` is optional; a file without it was refused.

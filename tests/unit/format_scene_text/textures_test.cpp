@@ -1,4 +1,4 @@
-// `textures` of a glTF object: its base colours as spectra, texel by texel or in classes.
+// `textures` of a glTF or OBJ object: its base colours as spectra, texel by texel or in classes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -148,6 +148,94 @@ TEST_F(Textures, AreRefusedWhereTheyCannotBeRead) {
   EXPECT_THAT(told("inside.glb", "uplift: both"), HasSubstr("classes"));
   EXPECT_THAT(told("inside.glb", "uplift: texel, classes: 3"), HasSubstr("'classes' goes with"));
   EXPECT_THAT(told("inside.glb", "uplift: classes, classes: 0"), HasSubstr("1"));
+}
+
+// A square of an OBJ in two triangles of two materials that share their corners.
+class ObjTextures : public Textures {
+ protected:
+  ObjTextures() { write_file(folder_ / "t.obj", kText); }
+  Scene bake_obj(const std::string& library, const std::string& textures = ", textures: {uplift: texel}") {
+    write_file(folder_ / "t.mtl", library);
+    write_file(folder_ / "s.yaml", "scene: 1\nobjects: {m: {obj: t.obj" + textures + "}}\nworld: [{place: m}]\n");
+    report_ = Report(scene_issues());
+    return bake_scene(read_scene_text(folder_ / "s.yaml", {}, report_), report_);
+  }
+  static constexpr std::string_view kText =
+      "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+      "usemtl leaf\nf 1/1 2/2 3/3\nusemtl red paint\nf 1/1 3/3 4/4\n";
+};
+
+TEST_F(ObjTextures, BecomeSpectraAsThoseOfModels) {
+  const Scene s = bake_obj("newmtl leaf\nKd 0.5 1 1\nmap_Kd -clamp on a leaf.png\nnewmtl red paint\nKd 0.6 0.1 0.1\n");
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  ASSERT_EQ(s.property_maps.size(), 1u);
+  const PropertyMap& map = s.property_maps[0];
+  EXPECT_EQ(map.kind, MapKind::cube);
+  EXPECT_EQ(map.drape.extend, Drape::Extend::clamp);
+  for (const bool second : {false, true}) {
+    const auto expected = uplifted_values(leaf_texel(second));
+    for (size_t k = 0; k < kUpliftedWaves; ++k) EXPECT_NEAR(map.values[second * kUpliftedWaves + k], expected[k], 1e-6);
+  }
+  EXPECT_NEAR(material(s, "m/red paint").surface.curves.at("reflectance").at(0.7), 0.6, 1e-6);
+}
+
+// -s and -o hold for their own material alone, whose corners are no longer those of the other.
+TEST_F(ObjTextures, AreScaledAndMoved) {
+  const Scene s =
+      bake_obj("newmtl leaf\nKd 1 1 1\nmap_Kd -s 2 3 -o 0.25 0.5 a leaf.png\nnewmtl red paint\nKd 0.6 0.1 0.1\n");
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  const Mesh& mesh = s.meshes.at(0);
+  ASSERT_EQ(mesh.uvs.size(), 12u);  // two corners are of both
+  const auto uv = [&](size_t corner, size_t c) { return double{mesh.uvs[2 * mesh.indices[corner] + c]}; };
+  const auto at = [&](size_t corner, size_t c) { return double{mesh.positions[3 * mesh.indices[corner] + c]}; };
+  for (size_t corner = 0; corner < 6; ++corner) {
+    const bool leaf = corner < 3;
+    EXPECT_NEAR(uv(corner, 0), leaf ? 2 * at(corner, 0) + 0.25 : at(corner, 0), 1e-6) << corner;
+    EXPECT_NEAR(uv(corner, 1), leaf ? 3 * at(corner, 1) + 0.5 : at(corner, 1), 1e-6) << corner;
+  }
+}
+
+TEST_F(ObjTextures, WhatIsLeftOutIsTold) {
+  const std::string red = "newmtl red paint\nKd 0.6 0.1 0.1\n";
+  bake_obj(
+      "newmtl leaf\nKd 0 0 0\nmap_Kd -mm 0.2 1 a leaf.png\nd 0.5\nKe 1 0 0\nmap_Bump b.png\nillum 2\nKs 0.5 0.5 0.5\n" +
+      red);
+  EXPECT_THAT(report_.text(),
+              HasSubstr("left out of how surfaces look: transparency of 1 material (an 'opacity' map makes holes), "
+                        "emission of 1 material"));
+  EXPECT_THAT(report_.text(), HasSubstr("normal or bump maps of 1 material"));
+  EXPECT_THAT(report_.text(), HasSubstr("gloss, metal or occlusion of 1 material"));
+  EXPECT_THAT(report_.text(), HasSubstr("have a Kd of 0: it is taken as 1"));
+  EXPECT_THAT(report_.text(), HasSubstr("have -mm or -t"));
+  bake_obj("newmtl leaf\nKd 1 1 1\n" + red);
+  EXPECT_THAT(report_.text(), Not(HasSubstr("left out")));
+  std::string coloured(kText);
+  coloured.replace(coloured.find("v 0 0 0"), 7, "v 0 0 0 1 0 0");
+  write_file(folder_ / "t.obj", std::string_view(coloured));
+  bake_obj("newmtl leaf\nKd 1 1 1\n" + red);
+  EXPECT_THAT(report_.text(), HasSubstr("colours of vertices of 1 mesh part"));
+  // Without `textures` the library is not opened, and that is told.
+  bake_obj("", ", materials: {leaf: x, red paint: x}}, x: {box: {}");
+  EXPECT_THAT(report_.text(), HasSubstr("mtllib t.mtl: its display colours are no spectra"));
+}
+
+TEST_F(ObjTextures, AreRefusedWhereTheyCannotBeRead) {
+  const auto told = [&](const std::string& library) {
+    bake_obj(library);
+    EXPECT_FALSE(report_.ok());
+    return report_.text();
+  };
+  const std::string red = "newmtl red paint\nKd 0.6 0.1 0.1\n";
+  EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd none.png\n"), HasSubstr("t.mtl:3:1: its file 'none.png': no such file"));
+  EXPECT_THAT(told(red + "newmtl leaf\nKd 1 x\n"), HasSubstr("t.mtl:4:1: Kd of 'leaf' is no colour"));
+  EXPECT_THAT(told(red + "newmtl leaf\nmap_Kd -s 1e99 1 a leaf.png\n"), HasSubstr("t.mtl:3:1: map_Kd of 'leaf'"));
+  EXPECT_THAT(told(red + std::string("newmtl leaf\0", 12)), HasSubstr("is not a text file"));
+  // What has no colour is no material.
+  EXPECT_THAT(told(red + "newmtl leaf\nNs 3\n"), HasSubstr("leaf"));
+  write_file(folder_ / "t.obj", kText.substr(kText.find('\n') + 1));
+  EXPECT_THAT(told(red), HasSubstr("'t.obj' names no library of materials (mtllib)"));
+  write_file(folder_ / "t.obj", "mtllib gone.mtl\n" + std::string(kText));
+  EXPECT_THAT(told(red), HasSubstr("its file 'gone.mtl': no such file"));
 }
 
 }  // namespace
