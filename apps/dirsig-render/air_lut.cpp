@@ -162,7 +162,7 @@ int run_air_lut(const RenderOptions& o, const Simulation& sim) {
       return 0;
     });
   } catch (const Stopped&) {
-    note("air LUT: stopped; the same command goes on from the states that are done");
+    note("air LUT: stopped; the same command continues from the states that are done");
     return 128 + stop_signal();
   }
   if (request.check) report_errors(table, result.errors);

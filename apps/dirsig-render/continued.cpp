@@ -82,7 +82,7 @@ void check_kind_of_target(const Simulation& sim, const Budget& asked, const Budg
         if (!capture.detector_noise.empty())
           throw UsageError("sensor '" + sensor->name() +
                            "' was planned by its detector's noise, and its pilot does not hold what --target-error "
-                           "needs: leave it out, or start anew");
+                           "needs: leave it out, or start a new run");
 }
 
 Budget with_more(const RenderOptions& o, const Simulation& sim, const JobOptions& options, Budget budget) {

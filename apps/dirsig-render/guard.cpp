@@ -196,7 +196,7 @@ std::string what_is_left(const std::string& folder, size_t finished, size_t capt
   if (!file_exists(state)) return text + "; no state could be kept";
   return text + "; " + state +
          " holds the finished captures and blocks of 8 x 8 pixels: the same command with --resume in place of --state "
-         "and its budget goes on from there";
+         "and its budget continues from there";
 }
 
 namespace {

@@ -132,7 +132,7 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
   HeatResult result = read_heat(options.heat, *p.elements, *p.faces, asks_fluxes(sim));
   if (sim.heat->final_gather && result.straight.empty())
     throw Error(options.heat + ": holds temperatures of elements alone, and `final_gather` asks for points",
-                "find them anew with it, or drop it");
+                "solve for them again with it, or drop it");
   if (result.span.begin != p.spec.span.begin || result.span.end != p.spec.span.end)
     emit({Dr::heat_other_span,
           strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",

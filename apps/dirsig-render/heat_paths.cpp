@@ -108,7 +108,7 @@ bool take_stored(const StoredOperator& stored, const std::string& from, const Op
     return true;
   }
   note(exchange + " is" +
-       strf(" that of %s; the sun is elsewhere than there (%s), its light is found anew", from.c_str(),
+       strf(" that of %s; the sun is elsewhere than there (%s), its light is computed again", from.c_str(),
             std::isfinite(near.off)
                 ? strf("by %.2g degrees, %.2g are too few to matter", degrees, kNearSun * 180 / kPi).c_str()
                 : "in other steps, of another size or with other spectra"));

@@ -107,7 +107,7 @@ void check_rests(const PreparedHeat& p, const Simulation& sim) {
         sim.heat->where,
         strf("the file has temperatures of things that move from %g to %g s, the simulation asks for %g to %g s",
              of.begin, of.end, p.spec.span.begin, p.spec.span.end),
-        "ask for that span with 'from' and 'to', or find them anew");
+        "ask for that span with 'from' and 'to', or solve for them again");
 }
 
 }  // namespace

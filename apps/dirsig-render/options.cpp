@@ -22,7 +22,7 @@ AppInfo render_info() {
           "Examples:\n"
           "  dirsig-render sim.yaml -o out/\n"
           "  dirsig-render sim.yaml -o quick/ --paths 8       a quick look\n"
-          "  dirsig-render sim.yaml --set sensors.0.columns=64 --set sky=null    other values, for once\n"
+          "  dirsig-render sim.yaml --set sensors.0.columns=64 --set sky=null    other values for one run\n"
           "  dirsig-render sim.yaml --target-error 1%          as many paths as each pixel needs\n"
           "  dirsig-render sim.yaml --time 10min               as many as there is time for\n"
           "  dirsig-render sim.yaml --paths 64 --state         ... and later, the same bits as with 128 at once:\n"
@@ -69,7 +69,7 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.option(
       "--air-lut", o.air_lut,
       "make a table for atmospheric correction of the simulation's real air and its sensor's bands over the grid "
-      "in this text (formats/air_lut/FORMAT.md), write FOLDER/air_lut.nc and air_lut.csv, and stop; goes on from "
+      "in this text (formats/air_lut/FORMAT.md), write FOLDER/air_lut.nc and air_lut.csv, and stop; continues from "
       "what a stopped run has done",
       "GRID.yaml");
   cli.option("--against", o.against,
@@ -176,12 +176,12 @@ void declare_render(Cli& cli, RenderOptions& o) {
              "standard|paper");
   cli.option("--cache-memory", o.kit_memory,
              "room for materials and lights that are kept for later captures (KiB, MiB, GiB; 1GiB unless given); with "
-             "less they are made anew, results stay the same",
+             "less they are rebuilt, results stay the same",
              "512MiB");
   cli.option(
       "--memory", o.memory,
       "room for the scene's tiles: the ray tracer's structures and the geometry under them (KiB, MiB, GiB); what "
-      "is over is given up and made anew, results stay the same",
+      "is over is dropped and rebuilt, results stay the same",
       "8GiB");
   cli.flag("--state", o.state, "keep FOLDER/result.state.h5, from which the run can be continued");
   cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");

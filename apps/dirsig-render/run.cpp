@@ -84,7 +84,7 @@ std::string explain(const std::string& feature) {
   try {
     return explain_feature(feature);
   } catch (const Error& e) {
-    const std::vector<std::string> names = feature_names();
+    const std::vector<std::string> names = explained_names();
     const std::string near = nearest_name(feature, names);
     std::string all;
     for (const std::string& name : names) all += ", " + name;
@@ -171,7 +171,11 @@ std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());
   if (o.list_diagnostics) return print(diagnostics_text());
-  if (!o.explain.empty()) return print(explain(o.explain));
+  if (!o.explain.empty()) {
+    const int code = print(explain(new_part_name(o.explain)));
+    report_renamed();
+    return code;
+  }
   const bool deck = o.air && is_deck(o.simulation);
   if (!o.against.empty() && !deck) throw UsageError("--against belongs to --air and a deck (.tp5, .ltn, tape5)");
   if (deck) return print(deck_text(o.simulation, o.against));

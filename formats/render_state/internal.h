@@ -10,7 +10,7 @@ namespace suite::render_state {
 inline constexpr const char* kFormat = "dirsig-render state";
 inline constexpr const char* kVersion = "6";
 inline constexpr const char* kHint =
-    "only the run that made a state can go on with it: start anew, or give another folder";
+    "only the run that made a state can continue with it: start a new run, or give another folder";
 
 std::string group_of(size_t capture);  // "/captures/000012"
 // The columns of a capture whose rows are [problem][scramble], as Accumulators::columns() has them.

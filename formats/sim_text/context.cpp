@@ -39,7 +39,7 @@ void read_epoch(const Params& root, Simulation& sim) {
           time->where,
           strf("the %s's date is not that of second 0, which is %s", light->key().c_str(),
                to_iso8601(*sim.epoch).c_str()),
-          "give the same date: Sun and Moon by date go on with the captures' times; one that stands still has a "
+          "give the same date: Sun and Moon set by date move with the captures' times; one that stands still has a "
           "direction {zenith_deg, azimuth_deg}");
   }
   sim.dut1_given = root.has("dut1_s");

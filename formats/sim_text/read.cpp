@@ -93,11 +93,12 @@ void check_times(const Params& p, const Sensor& sensor, const SensorContext& con
 
 void read_techniques(const Params& p, PipelineOptions& options) {
   for (const std::string& key : p.keys()) {
-    const auto all = technique_switches();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const TechniqueSwitch& s) { return s.name == key; });
-    if (found == all.end())
-      throw Error(p.where(key), "there is no technique '" + key + "'", "one of: " + names_of_techniques());
-    if (!p.at(key).as_bool()) found->off(options);
+    const NamedTechnique* technique = technique_of(key);
+    if (!technique) throw Error(p.where(key), "there is no technique '" + key + "'", "one of: " + names_of_switches());
+    if (!technique->off)
+      throw Error(p.where(key), "'" + key + "' has no switch here, for its light would be missing",
+                  "`atmosphere: {" + key + ": false}` leaves it out; here: " + names_of_switches());
+    if (!p.at(key).as_bool()) technique->off(options);
   }
 }
 

@@ -104,7 +104,7 @@ constexpr DiagnosticKind kKinds[] = {
      "reduce influence_cutoff_k, or set it to 0"},
     {Dr::heat_limit, kWarning, "the heat balance neglects something that matters here", "see the text"},
     {Dr::heat_other_span, kWarning, "a file of temperatures covers another time than the simulation",
-     "find the temperatures anew, or change the times"},
+     "solve for the temperatures again, or change the times"},
     {Dr::heat_unused, kWarning, "the simulation has `heat` and no material uses it",
      "give materials `temperature: {model: heat}`, or remove `heat`"},
     {Dr::heat_points_displaced, kWarning, "points lie on objects that stand elsewhere at other times",

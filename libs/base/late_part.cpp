@@ -16,7 +16,7 @@ const void* late_symbol(const std::string& name, const char* symbol) {
   if (unknown) throw Error("the folder of this program is not known: " + unknown.message(), "is /proc mounted?");
   const std::string path = (program.parent_path().parent_path() / "lib/suite" / (name + ".so")).string();
   const std::string hint =
-      "it belongs into lib/suite beside the folder of this program; install or build the suite anew";
+      "it belongs into lib/suite beside the folder of this program; reinstall or rebuild the suite";
   void* const part = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (!part) {
     const char* const why = dlerror();

@@ -11,7 +11,7 @@ namespace suite {
 
 namespace {
 
-constexpr auto kKey = RenamedName::Of::key, kOption = RenamedName::Of::option;
+constexpr auto kKey = RenamedName::Of::key, kOption = RenamedName::Of::option, kPart = RenamedName::Of::part;
 
 constexpr RenamedName kNames[] = {
     {kKey, "guide_to_gloss", "caustic_guiding", "simulation"},
@@ -33,6 +33,12 @@ constexpr RenamedName kNames[] = {
     {kKey, "turn", "random_heading", "`scatter` of a placement"},
     {kOption, "--kit-memory", "--cache-memory", "dirsig-render"},
     {kOption, "--account", "--import-report", "dirsig-render, scene-prep"},
+    {kPart, "MNEE", "manifold", "`--explain`"},
+    {kPart, "refracted light", "manifold", "`--explain`"},
+    {kPart, "multi-vertex NEE", "volume_chains", "`--explain`"},
+    {kPart, "splitting", "side_vertex", "`--explain`"},
+    {kPart, "caustic guiding", "caustic_guide", "`--explain`"},
+    {kPart, "gloss guide", "caustic_guide", "`--explain`"},
 };
 
 struct Noted {
@@ -46,6 +52,8 @@ Noted& noted() {
 
 // "--name" of "--name=value".
 std::string_view name_of(std::string_view argument) { return argument.substr(0, argument.find('=')); }
+
+const char* word_of(RenamedName::Of of) { return of == kKey ? "key" : of == kOption ? "option" : "part"; }
 
 bool has_option(const RenamedName& row, const std::string& program) {
   return row.of == kOption && (", " + std::string(row.where) + ",").find(" " + program + ",") != std::string::npos;
@@ -81,10 +89,18 @@ std::vector<RenamedUse> take_renamed_uses() {
 }
 
 std::string text_of(const RenamedUse& use) {
-  const bool key = use.name->of == kKey;
-  const std::string place = key ? to_text(use.where) + ": " : "";
-  return place + strf("the %s '", key ? "key" : "option") + std::string(use.name->old_name) + "' is now '" +
+  const std::string place = use.name->of == kKey ? to_text(use.where) + ": " : "";
+  return place + strf("the %s '", word_of(use.name->of)) + std::string(use.name->old_name) + "' is now '" +
          std::string(use.name->new_name) + "'; the old name is still read";
+}
+
+std::string new_part_name(const std::string& name) {
+  for (const RenamedName& row : kNames) {
+    if (row.of != kPart || row.old_name != name) continue;
+    note_renamed(row, Where{name, 0, 0, {}, -1});
+    return std::string(row.new_name);
+  }
+  return name;
 }
 
 Error both_given(const RenamedName& name, const Where& old_place, const Where& new_place) {

@@ -11,7 +11,7 @@ std::unique_ptr<Ranks> join_ranks() {
   // All would say the same.
   if (!how.first) throw EndedElsewhere();
   throw Error("started as one of several ranks, but MPI was not there when this program was built",
-              "install it (scripts/install does) and build anew, or run parts (--part)");
+              "install it (scripts/install does) and rebuild, or run parts (--part)");
 }
 
 }  // namespace suite

@@ -1,5 +1,6 @@
 #include "scheduler/features.h"
 
+#include <algorithm>
 #include <set>
 
 #include "base/error.h"
@@ -35,7 +36,7 @@ std::vector<Feature> all_features() {
        "which it is when it shows in some spectral window (--explain temperatures)."}};
   for (const LightRow* row : light_keys()) all.push_back({row->key(), row->uses});
   all.push_back({"atmosphere", "Layers of air that dim and scatter along every segment of a path."});
-  for (const TechniqueRow& row : technique_rows()) all.push_back({row.name, row.text});
+  for (const TechniqueRow& row : technique_rows()) all.push_back({name_of(row.technique), row.text});
   all.insert(all.end(), {{"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
                          {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
                          {"bands", "Spectral bins are carried only where a band of the state responds."}});
@@ -64,7 +65,7 @@ void add_lights(const SourceSpecs& sources, std::vector<FeatureUse>& to) {
 void add_techniques(const TechniqueFacts& facts, std::vector<FeatureUse>& to) {
   for (const TechniqueRow& row : technique_rows()) {
     const TechniqueCondition* missing = unmet(row, facts);
-    to.push_back({row.name, !missing, missing ? missing->otherwise : row.conditions.front().needs});
+    to.push_back({name_of(row.technique), !missing, missing ? missing->otherwise : row.conditions.front().needs});
   }
 }
 
@@ -106,8 +107,7 @@ std::string text_of(const std::vector<FeatureUse>& features) {
 }
 
 std::optional<std::string> explain_use(const std::string& feature) {
-  for (const TechniqueRow& row : technique_rows())
-    if (row.name == feature) return explained(row);
+  if (auto text = explain_technique(feature)) return text;
   for (const Feature& f : all_features())
     if (f.name == feature) return f.name + ": " + f.text + "\n";
   return std::nullopt;
@@ -116,6 +116,13 @@ std::optional<std::string> explain_use(const std::string& feature) {
 std::vector<std::string> feature_names() {
   std::vector<std::string> names;
   for (const Feature& f : all_features()) names.push_back(f.name);
+  return names;
+}
+
+std::vector<std::string> explained_names() {
+  std::vector<std::string> names = feature_names();
+  for (const NamedTechnique& t : named_techniques())
+    if (std::ranges::find(names, t.name) == names.end()) names.push_back(t.name);
   return names;
 }
 

@@ -28,5 +28,7 @@ std::string text_of(const std::vector<FeatureUse>& features);
 // What a feature is and what it costs when it is not used; nothing for a name that is none.
 std::optional<std::string> explain_use(const std::string& feature);
 std::vector<std::string> feature_names();
+// All that explain_use() knows: these, and techniques that are no feature.
+std::vector<std::string> explained_names();
 
 }  // namespace suite

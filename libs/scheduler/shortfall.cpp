@@ -100,8 +100,7 @@ struct SmallSources {
 };
 SmallSources small_sources(const SourceSpecs& sources, const TechniqueFacts& facts, uint32_t paths, bool repeats) {
   // Manifold NEE connects through smooth interfaces; not by way of mirrors.
-  const bool connects = uses(ListedTechnique::manifold_nee, facts),
-             guided = uses(ListedTechnique::caustic_guiding, facts);
+  const bool connects = uses(ListedTechnique::manifold, facts), guided = uses(ListedTechnique::caustic_guide, facts);
   constexpr double kNever = 1e-12;
   SmallSources found;
   for (const LightSpecPtr& light : sources.lights) {

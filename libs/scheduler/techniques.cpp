@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "transport/lost_light.h"
 
 namespace suite {
@@ -23,7 +24,7 @@ constexpr TechniqueCondition kManifold{[](const Facts& f) { return f.options.ref
 constexpr TechniqueCondition kMedia{[](const Facts& f) { return f.media > 0; }, "media in the scene",
                                     "no media in the scene"};
 
-bool behind_interfaces(const Facts& f) { return uses(ListedTechnique::manifold_nee, f); }
+bool behind_interfaces(const Facts& f) { return uses(ListedTechnique::manifold, f); }
 
 constexpr TechniqueCondition kManifoldNee[] = {kSmooth, kSmall, kStandard, kSampled, kManifold};
 constexpr TechniqueCondition kMultiVertex[] = {
@@ -36,6 +37,13 @@ constexpr TechniqueCondition kSplitting[] = {
     {[](const Facts& f) { return f.smooth == 0; }, "no smooth refracting material",
      "paths in media behind smooth interfaces have multi-vertex NEE"},
     {[](const Facts& f) { return f.options.side_flights; }, "splitting switched on", "switched off"}};
+constexpr TechniqueCondition kEquiangular[] = {
+    kStandard,
+    kSampled,
+    {[](const Facts& f) { return f.even_media; }, "media in the scene, without traced air",
+     "no media in the scene, or traced air"},
+    {[](const Facts& f) { return f.points; }, "a point or spot lamp (16 at most)", "no point or spot lamp"},
+    {[](const Facts& f) { return f.options.equiangular; }, "equiangular sampling switched on", "switched off"}};
 constexpr TechniqueCondition kCausticGuiding[] = {
     {[](const Facts& f) { return f.not_matte > 0; }, "a material that is not Lambertian",
      "all materials are Lambertian"},
@@ -55,24 +63,33 @@ constexpr TechniqueCondition kAdjacency[] = {
     kStandard,
     kSampled};
 
+constexpr const char* kLightSampling =
+    "Sun, moon, lamps and a sky that varies are sampled at every vertex, with a shadow ray each. A uniform sky is met "
+    "by continuations alone.";
+
 constexpr TechniqueRow kRows[] = {
-    {ListedTechnique::manifold_nee, "MNEE",
-     "Manifold next-event estimation: sun, moon and lamps are connected through smooth interfaces (water, panes, "
+    {ListedTechnique::manifold,
+     "Sun, moon and lamps are connected through smooth interfaces (water, panes, "
      "lenses) from every vertex. Where no material refracts smoothly nothing of it is made, and it costs nothing.",
      kManifoldNee},
-    {ListedTechnique::multi_vertex_nee, "multi-vertex NEE",
+    {ListedTechnique::volume_chains,
      "Several scattering vertices between a vertex and a light behind smooth interfaces, sampled together where media "
      "scatter forwards.",
      kMultiVertex},
-    {ListedTechnique::splitting, "splitting",
+    {ListedTechnique::side_vertex,
      "A second free flight towards the sun or the moon from vertices in media that scatter forwards.", kSplitting},
-    {ListedTechnique::caustic_guiding, "caustic guiding",
-     "Photon-guided sampling of caustics: photons find where narrow lobes reflect sun, moon and lamps to, and a share "
+    {ListedTechnique::equiangular,
+     "One more scattering vertex on flights that begin near a point lamp, in mean free paths, by the angle that the "
+     "lamp "
+     "sees. Flights in grids and traced air have none.",
+     kEquiangular},
+    {ListedTechnique::caustic_guide,
+     "Photons find where narrow lobes reflect sun, moon and lamps to, and a share "
      "of continuations is drawn there. Where no material has a narrow lobe, or no photon lands, none is kept, and "
      "paths cost what they did without.",
      kCausticGuiding},
-    {ListedTechnique::adjacency, "adjacency",
-     "Residual estimator over the 1-D field of real air: shadows in the air and light of single places. Without, or "
+    {ListedTechnique::adjacency,
+     "Shadows in the air and light of single places. Without, or "
      "without air, kernels are made that know nothing of it.",
      kAdjacency},
 };
@@ -81,16 +98,29 @@ constexpr TechniqueRow kRows[] = {
 
 std::span<const TechniqueRow> technique_rows() { return kRows; }
 
-const TechniqueRow& technique_row(ListedTechnique technique) { return kRows[static_cast<size_t>(technique)]; }
+const TechniqueRow& technique_row(ListedTechnique technique) {
+  const auto found = std::ranges::find(kRows, technique, &TechniqueRow::technique);
+  if (found == std::end(kRows)) throw Bug(std::string(name_of(technique)) + " has no conditions");
+  return *found;
+}
 
 const TechniqueCondition* unmet(const TechniqueRow& row, const TechniqueFacts& facts) {
   const auto found = std::ranges::find_if(row.conditions, [&](const auto& c) { return !c.holds(facts); });
   return found == row.conditions.end() ? nullptr : &*found;
 }
 
-std::string explained(const TechniqueRow& row) {
-  std::string text = std::string(row.name) + ": " + row.text + "\nUsed with:";
-  for (const TechniqueCondition& c : row.conditions) text += std::string("\n  ") + c.needs;
+std::optional<std::string> explain_technique(const std::string& name) {
+  const NamedTechnique* technique = technique_of(name);
+  if (!technique) return std::nullopt;
+  std::string text = name + ": " + technique->term + ".";
+  const auto row = std::ranges::find(kRows, technique->technique, &TechniqueRow::technique);
+  if (row == std::end(kRows)) {
+    text += std::string(" ") + kLightSampling;
+  } else {
+    text += std::string(" ") + row->text + "\nUsed with:";
+    for (const TechniqueCondition& c : row->conditions) text += std::string("\n  ") + c.needs;
+  }
+  if (technique->off) text += "\nOff, for studies: `techniques: {" + name + ": off}`";
   return text + "\n";
 }
 
@@ -103,8 +133,11 @@ TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, c
     f.small_lights = f.small_lights || parts > 0;
     f.sized_lights = f.sized_lights || parts > light->hardly_met(kNever).size();
     f.beams = f.beams || (!light->in_scene() && parts > 0);
+    f.points = f.points || (light->in_scene() && !light->hardly_met(kNever).empty());
   }
-  f.media = scene.media.size() + (sources.air && sources.air->scattering == AirScattering::traced);
+  const bool traced = sources.air && sources.air->scattering == AirScattering::traced;
+  f.media = scene.media.size() + traced;
+  f.even_media = !scene.media.empty() && !traced;
   for (const Material& m : scene.materials) {
     const std::string& model = m.surface.model;
     f.smooth += model == "dielectric";

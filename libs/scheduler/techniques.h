@@ -4,6 +4,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -11,16 +12,9 @@
 #include "scene/scene.h"
 #include "surface/optics.h"
 #include "transport/options.h"
+#include "transport/technique_switches.h"
 
 namespace suite {
-
-enum class ListedTechnique : uint8_t {
-  manifold_nee,      // next-event estimation of lights behind smooth interfaces (MNEE)
-  multi_vertex_nee,  // of lights behind media under smooth interfaces
-  splitting,         // with a light-directed scattering vertex
-  caustic_guiding,   // photon-guided sampling of caustics
-  adjacency,         // residual estimator over a 1-D field of air
-};
 
 // What the conditions look at.
 struct TechniqueFacts {
@@ -28,7 +22,9 @@ struct TechniqueFacts {
   bool small_lights = false;  // sun, moon or lamps: what continuations hardly find
   bool sized_lights = false;  // of them such as have a size, so that continuations may meet them
   bool beams = false;         // sun or moon
+  bool points = false;        // lamps that are points
   size_t media = 0;
+  bool even_media = false;                      // media of the scene, and no traced air
   size_t smooth = 0, not_matte = 0, rough = 0;  // materials: Dirac refraction; not Lambertian; these with wide lobes
   bool real_air = false, field = false, adjacency = false;  // of the air: a profile, a diffuse field, adjacency wanted
 };
@@ -44,21 +40,22 @@ struct TechniqueCondition {
   const char* otherwise;  // why it is not used: "no sun, moon or lamp in the simulation"
 };
 struct TechniqueRow {
-  ListedTechnique technique;
-  const char* name;  // of `--explain`, of the list of parts
-  const char* text;  // what it does
+  ListedTechnique technique;  // whose name is that of the list of parts
+  const char* text;           // what it does
   std::span<const TechniqueCondition> conditions;
 };
 
-// All of them, in the order of the enumeration.
+// Those that have conditions, in the order of the enumeration: all but light_sampling, which every light decides for
+// itself.
 std::span<const TechniqueRow> technique_rows();
+// Bug for one without conditions.
 const TechniqueRow& technique_row(ListedTechnique technique);
 // The first condition that does not hold; null when the technique is used.
 const TechniqueCondition* unmet(const TechniqueRow& row, const TechniqueFacts& facts);
 inline bool uses(ListedTechnique technique, const TechniqueFacts& facts) {
   return !unmet(technique_row(technique), facts);
 }
-// What it does and what it needs.
-std::string explained(const TechniqueRow& row);
+// What a technique does, what it needs and how it is switched off; nothing for a name that is none.
+std::optional<std::string> explain_technique(const std::string& name);
 
 }  // namespace suite

@@ -92,7 +92,7 @@ def combined(tree: Path, work: Path) -> Path:
     write_programs(tree, folder / PROGRAMS)
     info = dist_info(folder)
     (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: scripts/wheel\nRoot-Is-Purelib: false\nTag: py3-none-linux_x86_64\n")
-    # Without compression and checksums: auditwheel goes by the list of files, and writes both anew.
+    # Without compression and checksums: auditwheel goes by the list of files, and rewrites both.
     files = sorted(p.relative_to(folder) for p in folder.rglob("*") if p.is_file())
     (info / "RECORD").write_text("".join(f"{p},,\n" for p in files))
     wheel = work / f"{info.name.removesuffix('.dist-info')}-py3-none-linux_x86_64.whl"

@@ -54,7 +54,7 @@ class LitScene(Opened):
                  paths: Optional[int] = None, seed: Optional[int] = None) -> Radiance:
         """Radiance from where rays look, with its standard error. Places and directions are ENU (..., 3), broadcast
         against each other. paths: of each ray; without, as the sensor has it. What a result lacks is a ProgramWarning.
-        Optics and lights are made anew by every call: ask for arrays of rays."""
+        Every call builds optics and lights again: ask for arrays of rays."""
         shape, (o, d) = rows("origin and direction", origin, direction)
         n = len(o)
         time = None if time_s is None else np.ascontiguousarray(np.broadcast_to(np.asarray(time_s, np.float64), shape)).reshape(-1)

@@ -153,7 +153,7 @@ def to_text(value: Keys, path: FileName) -> str:
     folder = Path(os.path.abspath(path)).parent
     body = yaml.dump(plain(value, "", folder), Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=120,
                      default_flow_style=None)
-    return f"{_mark(value)}, and written anew by it.\n{body}"
+    return f"{_mark(value)}, and rewritten by it.\n{body}"
 
 
 def _mark(value: Keys) -> str:

@@ -43,6 +43,14 @@ def anchor_of(heading):
     return re.sub(r"[^\w\- ]", "", re.sub(r"`|\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()).replace(" ", "-")
 
 
+def under_one_heading(text):
+    """A manuscript, whose sections are all first headings, as one page: without a heading of its own every section would stand in the navigation."""
+    head = re.match(r"---\n.*?\n---\n", text, re.S)
+    at = head.end() if head else 0
+    deeper = outside_of_code(text[at:], lambda t: re.sub(r"^(#+ )", r"#\1", t, flags=re.M))
+    return f"{text[:at]}\n# Paper (draft)\n{deeper}"
+
+
 class Site:
     def __init__(self, root, source):
         self.root, self.source = root, source
@@ -150,7 +158,9 @@ class Site:
         self.home = self.homes()
         for page, text in sorted(self.pages.items()):
             text = self.without_empty_globs(text, page)
-            if page in self.own and not page.startswith(PAPER):
+            if page.startswith(PAPER):
+                text = under_one_heading(text)
+            elif page in self.own:
                 self.check_shape(page, text)
             parts, at = [], 0
             for match in INCLUDE.finditer(text):

@@ -43,7 +43,7 @@ def differs(root, bin_folder):
         return []
     with open(os.path.join(root, PAGE)) as f:
         same = f.read() == page(text)
-    return [] if same else [f"{PAGE}: differs from --list-diagnostics; write it anew: {__doc__.split(': ', 1)[1]}"]
+    return [] if same else [f"{PAGE}: differs from --list-diagnostics; rewrite it: {__doc__.split(': ', 1)[1]}"]
 
 
 if __name__ == "__main__":

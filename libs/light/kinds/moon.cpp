@@ -130,7 +130,7 @@ LightSpecPtr read_moon(const Params& p, const LightContext& context) {
   }
   const auto phase = p.find("phase_deg");
   if (phase && (!moon.by_phase || moon.disk.time))
-    throw phase->error("a moon by date, or with its own irradiance, has its phase already", "drop one of the two");
+    throw phase->error("a moon set by date, or with its own irradiance, has its phase already", "drop one of the two");
   if (moon.by_phase && !moon.disk.time) {
     if (!phase)
       throw p.error("the moon's light is not given", "give phase_deg, irradiance, or a direction by time_utc");
@@ -154,7 +154,7 @@ MoonSpec resolved(MoonSpec moon, const LightMoment& at) {
   MoonGeometry& g = moon.geometry;
   if (moon.disk.time) {
     const SourceTime& time = *moon.disk.time;
-    const SceneFrame frame = frame_of(at.scene, time.where, "a moon by date");
+    const SceneFrame frame = frame_of(at.scene, time.where, "a moon set by date");
     const Instant epoch = instant_of(time), instant = epoch + at.seconds;
     const double dut1 = dut1_at(instant, epoch, at.dut1);
     const SkyBody body = moon_at(frame, {}, instant, dut1), sun = sun_at(frame, {}, instant, dut1);

@@ -21,7 +21,7 @@ class SunLight final : public BodySpec {
     const SourceTime& time = *disk_.time;
     const Instant epoch = instant_of(time), instant = epoch + at.seconds;
     const SkyBody body =
-        sun_at(frame_of(at.scene, time.where, "a sun by date"), {}, instant, dut1_at(instant, epoch, at.dut1));
+        sun_at(frame_of(at.scene, time.where, "a sun set by date"), {}, instant, dut1_at(instant, epoch, at.dut1));
     SunSpec now = disk_;
     now.time.reset();
     now.direction = body.direction;

@@ -1,5 +1,5 @@
-// Old names of keys and options (base/renamed.h): each gives the bytes of the new name and one warning with a code that
-// names the new one; both at once are refused with their places. The page of old names is the table.
+// Old names of keys, options and parts (base/renamed.h): each gives the bytes of the new name and one warning with a
+// code that names the new one; both at once are refused with their places. The page of old names is the table.
 #include "base/renamed.h"
 
 #include <gmock/gmock.h>
@@ -85,6 +85,11 @@ std::vector<Row> scenes() {
               "{place: hill}, {place: stone, on: hill, scatter: {density_per_m2: 0.2, NAME: false}}"),
        "true"}};
 }
+
+// Parts of the renderer, by both names.
+constexpr std::pair<const char*, const char*> kParts[] = {
+    {"MNEE", "manifold"},         {"refracted light", "manifold"},      {"multi-vertex NEE", "volume_chains"},
+    {"splitting", "side_vertex"}, {"caustic guiding", "caustic_guide"}, {"gloss guide", "caustic_guide"}};
 
 std::string with_name(const std::string& text, const std::string& name) {
   return std::regex_replace(text, std::regex("NAME"), name);
@@ -251,9 +256,26 @@ TEST_F(Renamed, Settings) {
   EXPECT_THAT(both.err, HasSubstr("keep 'caustic_guiding' (sim.yaml:2:1)"));
 }
 
+// Parts of `--explain`: the old name explains the new one.
+TEST_F(Renamed, Parts) {
+  for (const auto& [old_name, new_name] : kParts) {
+    const CommandResult old = run(strf("dirsig-render --explain '%s'", old_name));
+    ASSERT_EQ(old.code, 0) << old.err;
+    EXPECT_EQ(count_of(old.err, "[DR904]"), 1u) << old.err;
+    EXPECT_THAT(old.err, HasSubstr(strf("the part '%s' is now '%s'", old_name, new_name)));
+    const CommandResult made = run(strf("dirsig-render --explain '%s'", new_name));
+    EXPECT_EQ(made.err, "") << new_name;
+    EXPECT_EQ(old.out, made.out) << old_name;
+    EXPECT_THAT(made.out, testing::StartsWith(std::string(new_name) + ": "));
+  }
+  EXPECT_THAT(run("dirsig-render --explain MNEE --mute DR904").err, Not(HasSubstr("DR904")));
+  EXPECT_EQ(run("dirsig-render --explain 'light guide'").code, 1);
+}
+
 // Every row of the table is gone through above, and stands on its page.
 TEST_F(Renamed, TheTableIsWhole) {
   std::vector<std::string> known{"--kit-memory --cache-memory", "--account --import-report"}, rows;
+  for (const auto& [old_name, new_name] : kParts) known.push_back(std::string(old_name) + " " + new_name);
   for (const auto& cases : {simulations(), scenes()})
     for (const Row& r : cases) known.push_back(std::string(r.old_name) + " " + r.new_name);
   std::string page;

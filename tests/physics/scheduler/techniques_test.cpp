@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 
 #include "tests/support/lamps_kit.h"
 #include "tests/support/pipeline_kit.h"
@@ -88,6 +89,7 @@ PipelineOptions with(const std::function<void(PipelineOptions&)>& change) {
 const PipelineOptions kPaper = with([](auto& o) { o.method = Method::paper; });
 const PipelineOptions kUnsampled = with([](auto& o) { o.explicit_sources = false; });
 const PipelineOptions kNoManifold = with([](auto& o) { o.refracted_sources = false; });
+const PipelineOptions kNoEquiangular = with([](auto& o) { o.equiangular = false; });
 const PipelineOptions kNoPhotons = with([](auto& o) { o.gloss_photons = 0; });
 
 std::vector<Case> cases() {
@@ -111,6 +113,8 @@ std::vector<Case> cases() {
           {"glass by the paper's method", corner(glass()), sun(), kPaper},
           {"haze in the sun", corner(matte, Fill::haze), sun()},
           {"haze under a sky", corner(matte, Fill::haze), sky()},
+          {"haze under a lamp", corner(matte, Fill::haze), lamp()},
+          {"haze under a lamp without equiangular sampling", corner(matte, Fill::haze), lamp(), kNoEquiangular},
           {"haze and gloss in the sun", corner(gloss(), Fill::haze), sun()},
           {"water in the sun", corner(glass(), Fill::under_floor), sun()},
           {"water without MNEE", corner(glass(), Fill::under_floor), sun(), kNoManifold},
@@ -138,31 +142,34 @@ KernelChoice kernel_of(const Case& c, bool& refracted) {
   return choose_kernel(context);
 }
 
-// What the kernels do of each technique, in the order of the table.
-std::vector<bool> done(const Case& c) {
+// What the kernels do of the techniques with conditions.
+std::map<ListedTechnique, bool> done(const Case& c) {
   bool refracted = false;
   const KernelChoice kernel = kernel_of(c, refracted);
   const std::vector<double> all = rendered(c, c.options);
-  const auto changes = [&](const std::function<void(PipelineOptions&)>& off) {
+  const auto changes = [&](ListedTechnique technique) {
     PipelineOptions options = c.options;
-    off(options);
+    named_techniques()[static_cast<size_t>(technique)].off(options);
     return rendered(c, options) != all;
   };
-  return {changes([](auto& o) { o.refracted_sources = false; }),
-          kernel.space == KernelChoice::Space::field && refracted, changes([](auto& o) { o.side_flights = false; }),
-          changes([](auto& o) { o.gloss_photons = 0; }), kernel.space == KernelChoice::Space::lit_air};
+  return {{ListedTechnique::manifold, changes(ListedTechnique::manifold)},
+          {ListedTechnique::volume_chains, kernel.space == KernelChoice::Space::field && refracted},
+          {ListedTechnique::side_vertex, changes(ListedTechnique::side_vertex)},
+          {ListedTechnique::equiangular, changes(ListedTechnique::equiangular)},
+          {ListedTechnique::caustic_guide, changes(ListedTechnique::caustic_guide)},
+          {ListedTechnique::adjacency, kernel.space == KernelChoice::Space::lit_air}};
 }
 
 // Scenes and techniques on which a table and the kernels do not agree.
-std::vector<std::string> disagreements(std::span<const Case> of, std::span<const std::vector<bool>> done,
+std::vector<std::string> disagreements(std::span<const Case> of, std::span<const std::map<ListedTechnique, bool>> done,
                                        std::span<const TechniqueRow> rows) {
   std::vector<std::string> found;
   for (size_t i = 0; i < of.size(); ++i) {
     const TechniqueFacts facts = technique_facts(*of[i].scene, of[i].sources, of[i].options);
     for (const TechniqueRow& row : rows) {
       const TechniqueCondition* missing = unmet(row, facts);
-      if (!missing != done[i][static_cast<size_t>(row.technique)])
-        found.push_back(std::string(of[i].name) + ": " + row.name + " is " +
+      if (!missing != done[i].at(row.technique))
+        found.push_back(std::string(of[i].name) + ": " + name_of(row.technique) + " is " +
                         (missing ? std::string("done, though '") + missing->otherwise + "'" : "not done"));
     }
   }
@@ -171,16 +178,15 @@ std::vector<std::string> disagreements(std::span<const Case> of, std::span<const
 
 TEST(Techniques, TheTableAgreesWithTheKernels) {
   const std::vector<Case> all = cases();
-  std::vector<std::vector<bool>> kernels;
+  std::vector<std::map<ListedTechnique, bool>> kernels;
   for (const Case& c : all) kernels.push_back(done(c));
   for (const std::string& text : disagreements(all, kernels, technique_rows())) ADD_FAILURE() << text;
 
   // Each technique is used in some scene and left out in another.
   for (const TechniqueRow& row : technique_rows()) {
-    const auto used =
-        std::ranges::count_if(kernels, [&](const auto& k) { return k[static_cast<size_t>(row.technique)]; });
-    EXPECT_GT(used, 0) << row.name;
-    EXPECT_LT(used, static_cast<long>(all.size())) << row.name;
+    const auto used = std::ranges::count_if(kernels, [&](const auto& k) { return k.at(row.technique); });
+    EXPECT_GT(used, 0) << name_of(row.technique);
+    EXPECT_LT(used, static_cast<long>(all.size())) << name_of(row.technique);
   }
 
   // Control: each row with one of its conditions turned round.
@@ -190,8 +196,9 @@ TEST(Techniques, TheTableAgreesWithTheKernels) {
       std::vector<TechniqueCondition> conditions(row.conditions.begin(), row.conditions.end());
       turned = &row.conditions[k];
       conditions[k].holds = [](const TechniqueFacts& f) { return !turned->holds(f); };
-      const TechniqueRow wrong{row.technique, row.name, row.text, conditions};
-      EXPECT_FALSE(disagreements(all, kernels, {&wrong, 1}).empty()) << row.name << ": " << row.conditions[k].needs;
+      const TechniqueRow wrong{row.technique, row.text, conditions};
+      EXPECT_FALSE(disagreements(all, kernels, {&wrong, 1}).empty())
+          << name_of(row.technique) << ": " << row.conditions[k].needs;
     }
   }
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <string_view>
 
 #include "tests/support/media_kit.h"
 #include "transport/technique_switches.h"
@@ -72,8 +71,7 @@ Repeated look(const Case& c, bool off, double bright = 1) {
   SourceSpecs sources;
   sources.add(SunSpec{kToSun, c.half_angle_deg * kDegree, Curve::constant(bright)});
   PipelineOptions options;
-  for (const TechniqueSwitch& s : technique_switches())
-    if (off && std::string_view(s.name) == c.technique) s.off(options);
+  if (off) technique_of(c.technique)->off(options);
   const Dir view = dir_from_angles(25 * kDegree, 2);
   const std::vector<Band> blue{Band::rectangular("blue", 0.45, 0.002)};
   auto r = render(

@@ -1,10 +1,16 @@
 // What a simulation says it uses and leaves alone.
 #include "scheduler/features.h"
+#include "base/files.h"
+#include "base/renamed.h"
 #include "light/kinds/lamps.h"
 #include "light/kinds/moon.h"
+#include "scheduler/techniques.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
 
 #include "support/radiometry_kit.h"
 
@@ -69,7 +75,7 @@ TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
   off.refracted_sources = false, paper.method = Method::paper;
   const auto said = [](const std::shared_ptr<Scene>& s, const SourceSpecs& sources, const PipelineOptions& options) {
     for (const FeatureUse& f : features_of(*s, sources, {}, options))
-      if (f.name == "MNEE") return f.why;
+      if (f.name == "manifold") return f.why;
     return std::string("missing");
   };
   const auto water = scene("dielectric");
@@ -79,6 +85,40 @@ TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
   EXPECT_EQ(said(water, none, {}), "no sun, moon or lamp in the simulation");
   EXPECT_EQ(said(water, sun, off), "`manifold_nee: false`");
   EXPECT_EQ(said(water, sun, paper), "the paper's estimator");
+}
+
+// Texts, `--explain`, the list of parts and the table of conditions say the same words, those of one list.
+TEST(Features, TechniquesHaveOneName) {
+  std::set<std::string> with_conditions;
+  for (const TechniqueRow& row : technique_rows()) {
+    with_conditions.insert(name_of(row.technique));
+    EXPECT_EQ(&technique_row(row.technique), &row);
+    EXPECT_GT(row.conditions.size(), 0u);
+  }
+  const std::vector<std::string> parts = feature_names(), known = explained_names();
+  for (size_t i = 0; i < named_techniques().size(); ++i) {
+    const NamedTechnique& t = named_techniques()[i];
+    const std::string name = t.name;
+    EXPECT_EQ(static_cast<size_t>(t.technique), i) << name;
+    EXPECT_EQ(technique_of(name), &t);
+    EXPECT_THAT(explain_use(name).value_or(""), testing::StartsWith(name + ": " + t.term + ". "));
+    EXPECT_EQ(std::ranges::count(known, name), 1) << name;
+    const bool listed = std::ranges::find(parts, name) != parts.end();
+    EXPECT_EQ(listed, with_conditions.contains(name)) << name;
+    EXPECT_EQ(listed, t.technique != ListedTechnique::light_sampling) << name;
+    for (const RenamedName& old : renamed_names()) EXPECT_NE(name, old.old_name);
+  }
+  EXPECT_EQ(technique_of("MNEE"), nullptr);
+  // Old names lead to names that there are.
+  for (const RenamedName& old : renamed_names())
+    EXPECT_TRUE(old.of != RenamedName::Of::part || explain_use(std::string(old.new_name))) << old.new_name;
+  // Sources that spell a technique's name out beside the list would be a second list.
+  for (const char* file :
+       {"scheduler/techniques.cpp", "scheduler/features.cpp", "scheduler/shortfall.cpp", "scheduler/air_limits.cpp"}) {
+    const std::string text = read_text(std::string(SUITE_SOURCE_DIR "/libs/") + file, 1 << 20);
+    for (const NamedTechnique& t : named_techniques())
+      EXPECT_EQ(text.find('"' + std::string(t.name) + '"'), text.npos) << file << ": " << t.name;
+  }
 }
 
 TEST(Features, EachIsExplained) {
