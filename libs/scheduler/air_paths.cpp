@@ -261,11 +261,35 @@ Paths paths_of(const Own& own, PathSet set) {
   return p;
 }
 
+// Through which air lights other than disks are seen: a vertical air mass, up to a height, m. Lamps may be near.
+struct Way {
+  double mass, height;
+};
+std::vector<Way> ways_of(const Paths& p) {
+  std::vector<Way> ways{{0, kHigh}, {p.views.front(), p.heights.front()}};
+  for (const double m : p.sky) ways.push_back({m, kHigh});
+  return ways;
+}
+
+// A light's spectra through each of the ways.
+Rows through(const Rows& lights, const Depths& depths, const std::vector<Way>& ways) {
+  Rows rows;
+  for (const Way& way : ways) {
+    const Row up = depths.up_to(way.height);
+    for (Row light : lights) {
+      for (size_t i = 0; i < light.size(); ++i) light[i] *= std::exp(-static_cast<float>(way.mass) * up[i]);
+      rows.push_back(std::move(light));
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 struct AirPaths::Shared {
   AirSpec air, clear;  // with gases and without
   Own own;
+  std::vector<LightSpectra> others;  // lights but for disks
   Depths::Scatterers any = {false, false};
 
   struct Made {
@@ -301,6 +325,8 @@ AirPaths::AirPaths(std::span<const SourceSpecs> sources, const Sensor& sensor, s
   shared_->air = shared_->clear = *sources[0].air;
   shared_->clear.gases = nullptr;
   shared_->own = own_paths(sources, sensor, state);
+  for (const LightSpecPtr& light : sources[0].lights)
+    if (!light->disk()) light->add_spectra(shared_->others);
   shared_->any = {shared_->air.molecules, shared_->air.aerosol || !shared_->air.clouds.empty()};
 }
 AirPaths::~AirPaths() = default;
@@ -335,6 +361,20 @@ std::vector<SeenSpectra> AirPaths::spectra(PathSet set) const {
         [paths, s = shared_](const Depths& d, const Row& sun) { return PathLight(d, sun, paths).sunlight(); });
   add(SpectrumRole::glow, glow_names(paths),
       [paths](const Depths& d, const Row& sun) { return PathLight(d, sun, paths).glow(); });
+  for (const LightSpectra& other : shared_->others) {
+    const std::vector<Way> ways = ways_of(paths);
+    SeenSpectra of{SpectrumRole::light, {}, {}};
+    for (const Way& way : ways)
+      for (const std::string& name : other.names)
+        of.names.push_back(strf("%s through %.3g times the lowest %.3g km", name.c_str(), way.mass, way.height / 1000));
+    of.over = [s = shared_, over = other.over, ways](const SpectralState& state) {
+      return through(over(state), *s->of(state)->with, ways);
+    };
+    of.unabsorbed = [s = shared_, over = other.over, ways](const SpectralState& state) {
+      return through(over(state), *s->of(state)->without, ways);
+    };
+    seen.push_back(std::move(of));
+  }
   return seen;
 }
 

@@ -1,5 +1,6 @@
 // What real air makes of light along slanted paths through it, for choosing bins and for judging them: sunlight down to
-// the ground and up again, sunlight that the air scatters once, and what ground and air emit, each through the gases.
+// the ground and up again, sunlight that the air scatters once, what other lights send, and what ground and air emit,
+// each through the gases.
 //
 // Paths run through flat layers; a low sun's or a level path's air mass ends at 10. Heights and slants are those of the
 // sensor's own rays and suns and some to both sides; those that bins are judged by (held out) are others than those

@@ -97,7 +97,8 @@ std::vector<float> blackbody_means(std::span<const Bin> bins, double kelvin) {
 
 void add_lights(const SourceSpecs& sources, std::vector<SeenSpectra>& to) {
   std::vector<LightSpectra> sent;
-  for (const LightSpecPtr& light : sources.lights) light->add_spectra(sent);
+  for (const LightSpecPtr& light : sources.lights)
+    if (!sources.air || light->disk()) light->add_spectra(sent);  // else AirPaths takes them through the air
   for (LightSpectra& s : sent) to.push_back({SpectrumRole::light, std::move(s.names), std::move(s.over)});
   if (sources.atmosphere) add_air(sources, to);
   if (sources.tabled) add_tables(sources.tabled, to);

@@ -113,22 +113,27 @@ class NightSky final : public Light {
   std::optional<Sky> sky_;
 };
 
-// Spectra of directions, so that none is negative.
+// Spectra of directions, so that none is negative; each as bright as in the mean over a level plane, so that the parts
+// compare with each other and with what the air and the ground emit.
 LightSpectra spectra_of(const NightMap& map) {
   LightSpectra seen;
   std::vector<GlowSpectrum> all;
+  std::vector<float> bright;
   const auto& components = map.components();
+  const std::vector<double> plane = map.integrals().plane;
   for (size_t i = 0; i < components.size(); ++i) {
     const bool red = i == 1 && components[1].part == NightPart::zodiacal;
     if (red) continue;
     seen.names.push_back(strf("the night sky, %s %zu", name_of(components[i].part).c_str(), i));
     all.push_back(components[i].spectrum);
+    bright.push_back(static_cast<float>(std::max(0.0, plane[i]) / kPi));
   }
-  seen.over = [all](const SpectralState& s) {
+  seen.over = [all, bright](const SpectralState& s) {
     std::vector<std::vector<float>> rows;
-    for (const GlowSpectrum& g : all) {
+    for (size_t i = 0; i < all.size(); ++i) {
       rows.emplace_back();
-      for (const Bin& b : s.bins) rows.back().push_back(static_cast<float>(g.mean(b.low_um, b.high_um)));
+      for (const Bin& b : s.bins)
+        rows.back().push_back(bright[i] * static_cast<float>(all[i].mean(b.low_um, b.high_um)));
     }
     return rows;
   };
