@@ -292,8 +292,8 @@ struct BinChooser::Question {
  private:
   static bool same(const SpectralState& a, const SpectralState& b) {
     const auto rest = [](const SpectralState& s) {
-      return std::array{s.low_um, s.high_um, s.reference_um, s.choice.error, s.choice.widest_um,
-                        static_cast<double>(s.choice.knots)};
+      return std::array{s.low_um,       s.high_um,          s.reference_um,
+                        s.choice.error, s.choice.widest_um, static_cast<double>(s.choice.knots)};
     };
     return rest(a) == rest(b) && a.bins == b.bins && a.knots == b.knots && a.shares == b.shares;
   }

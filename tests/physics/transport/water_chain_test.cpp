@@ -136,8 +136,8 @@ Rendered run_of(const Bay& bay, bool ball, uint32_t paths) {
 
 Repeated look(const Bay& bay, bool ball, uint32_t paths) { return over_problems(run_of(bay, ball, paths).result, 0); }
 
-// What chance finds takes four fifths of the time, so it is stored with its standard error, of kMore times the paths that
-// took as long. SUITE_LONG finds it anew, prints it as it stands in the tables below, and holds it against them.
+// What chance finds takes four fifths of the time, so it is stored with its standard error, of kMore times the paths
+// that took as long. SUITE_LONG finds it anew, prints it as it stands in the tables below, and holds it against them.
 constexpr uint32_t kMore = 4;
 bool is_long() { return std::getenv("SUITE_LONG") != nullptr; }
 template <class Find>
@@ -230,8 +230,7 @@ TEST(WaterChain, FindsOfTheSunWhatChanceFinds) {
                {"bed that mirrors", {.mirrors = true}, 720, 0.01, {0.0426754, 0.000116}}};
   for (const auto& c : cases) {
     const Repeated asked = look_up(c.bay, wide, true, c.paths * (is_long() ? 16 : 1)),
-                   chance =
-                       by_chance(c.name, c.chance, [&] { return look_up(c.bay, wide, false, 16384 * kMore); });
+                   chance = by_chance(c.name, c.chance, [&] { return look_up(c.bay, wide, false, 16384 * kMore); });
     const double error = std::hypot(asked.error, chance.error);
     print(c.name, asked, chance);
     EXPECT_NEAR(asked.mean, chance.mean, 3.5 * error);
