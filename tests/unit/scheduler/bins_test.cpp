@@ -114,35 +114,45 @@ bool alike(const SpectralState& a, const SpectralState& b) {
 }
 
 // Sensors of a simulation get what each would get by itself; those that are alike are not looked at again.
-TEST(Bins, OfSensorsThatAreAlikeAreFoundOnce) {
-  SourceSpecs lit = sun_of(kLine), in_air = lit;
-  in_air.air = std::make_shared<AirSpec>(summer());
-  for (const SourceSpecs& sources : {lit, in_air}) {
-    const bool air = sources.air != nullptr;
-    const std::vector<Ray> low{{{0, 0, 500}, {0, 0, -1}, 0}}, high{{{0, 0, 3000}, {0, 0, -1}, 0}},
-        slanted{{{0, 0, 500}, dir_from_angles(130 * kDegree, 0), 0}};
-    const std::vector<Band> other{kBands[0], Band::gaussian("wide", 0.86, 0.06)},
-        renamed{kBands[0], Band::gaussian("broad", 0.85, 0.06)};
-    const auto rough = [](std::vector<Ray> rays, const std::vector<Band>& bands, double error) {
-      return BinSensor(std::move(rays), bands, 1, error);
-    };
-    struct Asked {
-      BinSensor sensor;
-      bool anew;
-    } asked[] = {{rough(low, kBands, 1e-2), true},  {rough(low, kBands, 1e-2), false},
-                 {rough(high, kBands, 1e-2), air},  {rough(slanted, kBands, 1e-2), air},
-                 {rough(low, other, 1e-2), true},   {rough(low, kBands, 2e-2), true},
-                 {rough(low, renamed, 1e-2), true}, {rough(high, kBands, 1e-2), false}};
-    BinChooser chooser(*kScene, {&sources, 1});
-    size_t found = 0;
-    for (Asked& a : asked) {
-      BinSensor alone = a.sensor;
-      const std::string by_itself = choose_bins(*kScene, {&sources, 1}, alone).at(0).text();
-      EXPECT_EQ(chooser.choose(a.sensor).at(0).text(), by_itself);
-      EXPECT_TRUE(alike(a.sensor.state(), alone.state())) << by_itself;
-      EXPECT_EQ(chooser.found(), found += a.anew) << by_itself;
-    }
+struct Asked {
+  BinSensor sensor;
+  bool anew;
+};
+void expect_as_alone(const SourceSpecs& sources, std::vector<Asked> asked) {
+  BinChooser chooser(*kScene, {&sources, 1});
+  size_t found = 0;
+  for (Asked& a : asked) {
+    BinSensor alone = a.sensor;
+    const std::string by_itself = chosen(alone, *kScene, sources).text();
+    EXPECT_EQ(chooser.choose(a.sensor).at(0).text(), by_itself);
+    EXPECT_TRUE(alike(a.sensor.state(), alone.state())) << by_itself;
+    EXPECT_EQ(chooser.found(), found += a.anew) << by_itself;
   }
+}
+const std::vector<Ray> kLow{{{0, 0, 500}, {0, 0, -1}, 0}}, kHigh{{{0, 0, 3000}, {0, 0, -1}, 0}};
+
+TEST(Bins, OfSensorsThatAreAlikeAreFoundOnce) {
+  const std::vector<Band> other{kBands[0], Band::gaussian("wide", 0.86, 0.06)},
+      renamed{kBands[0], Band::gaussian("broad", 0.85, 0.06)};
+  expect_as_alone(sun_of(kLine), {{{kLow, kBands, 1, 1e-2}, true},
+                                  {{kLow, kBands, 1, 1e-2}, false},
+                                  {{kHigh, kBands, 1, 1e-2}, false},
+                                  {{kLow, other, 1, 1e-2}, true},
+                                  {{kLow, kBands, 1, 2e-2}, true},
+                                  {{kLow, renamed, 1, 1e-2}, true},
+                                  {{kLow, other, 1, 1e-2}, false}});
+}
+
+// Through air it matters from where and along which way a sensor looks.
+TEST(Bins, OfSensorsThatAreAlikeInAirAreFoundOnce) {
+  SourceSpecs sources = sun_of(kLine);
+  sources.air = std::make_shared<AirSpec>(summer());
+  const std::vector<Band> narrow{Band::gaussian("narrow", 0.7, 0.004)};
+  const std::vector<Ray> slanted{{{0, 0, 500}, dir_from_angles(130 * kDegree, 0), 0}};
+  expect_as_alone(sources, {{{kLow, narrow, 1, 1e-2}, true},
+                            {{kLow, narrow, 1, 1e-2}, false},
+                            {{kHigh, narrow, 1, 1e-2}, true},
+                            {{slanted, narrow, 1, 1e-2}, true}});
 }
 
 TEST(Bins, LeaveNoStretchOfTheWidestStepAlone) {
