@@ -6,9 +6,8 @@
 
 namespace suite {
 
-void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources, BandBiases& biases,
-                    FoundHeat heat) {
-  const std::vector<BinReport> reports = choose_bins(scene, sources, sensor, heat);
+void choose_bins_of(Sensor& sensor, BinChooser& chooser, BandBiases& biases) {
+  const std::vector<BinReport> reports = chooser.choose(sensor);
   add_biases(reports, biases);
   for (const BinReport& r : reports) {
     note(r.text());
@@ -40,9 +39,10 @@ void follow_heat(Simulation& sim, const Scene& scene, JobOptions& options, const
   note(strf("surfaces are as hot as %.0f K: bins, chosen for at most %g K, are chosen anew", heat.hottest,
             kSimulatedBelow));
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
+  BinChooser chooser(scene, standing, heat);
   for (size_t s = 0; s < sim.sensors.size(); ++s) {
     for (size_t state = 0; state < asked[s].size(); ++state) sim.sensors[s]->take_state(state, asked[s][state]);
-    choose_bins_of(*sim.sensors[s], scene, standing, options.biases, heat);
+    choose_bins_of(*sim.sensors[s], chooser, options.biases);
   }
 }
 

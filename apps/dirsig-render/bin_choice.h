@@ -10,9 +10,8 @@
 namespace suite {
 
 // Chooses the bins of a sensor's states, says what they are good for and keeps what is known of their errors. Error: as
-// choose_bins().
-void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources, BandBiases& biases,
-                    FoundHeat heat = {});
+// BinChooser::choose().
+void choose_bins_of(Sensor& sensor, BinChooser& chooser, BandBiases& biases);
 
 // States as the text asks for them, before bins are chosen; one list a sensor.
 using AskedStates = std::vector<std::vector<SpectralState>>;

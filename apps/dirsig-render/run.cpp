@@ -207,6 +207,7 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   for (const std::string& sentence : describe_sources(sim.sources, scene, sim.sensors)) note(sentence);
   for (const Diagnostic& d : diagnose_air(sim.sources, scene, sim.sensors, options)) emit(d);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
+  BinChooser chooser(scene, standing);
   for (size_t s = 0; s < sim.sensors.size(); ++s) {
     Sensor& sensor = *sim.sensors[s];
     try {
@@ -215,7 +216,7 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
       for (const std::string& channel : sensor.channels()) channel_rows().find(channel);
       check_air_asked(sim, scene, sensor);
       check_stokes(sim, sensor);
-      choose_bins_of(sensor, scene, standing, options.biases);
+      choose_bins_of(sensor, chooser, options.biases);
     } catch (const Error& e) {
       throw located(e, scene, sim, s);
     }

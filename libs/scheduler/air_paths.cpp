@@ -378,6 +378,13 @@ std::vector<SeenSpectra> AirPaths::spectra(PathSet set) const {
   return seen;
 }
 
+std::vector<double> AirPaths::key() const {
+  std::vector<double> key = shared_->own.heights;
+  key.push_back(-1);  // no height and no air mass
+  key.insert(key.end(), shared_->own.views.begin(), shared_->own.views.end());
+  return key;
+}
+
 std::vector<float> AirPaths::gas_depth(const SpectralState& state) const {
   const auto made = shared_->of(state);
   std::vector<float> depth(made->with->total(), made->with->total() + state.size());

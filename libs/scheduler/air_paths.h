@@ -25,6 +25,8 @@ class AirPaths {
   AirPaths(AirPaths&&) noexcept;
   // Lights and glows; what makes them is shared and lives as long.
   std::vector<SeenSpectra> spectra(PathSet set) const;
+  // What of the sensor enters: heights, then air masses of views. Equal ones have equal paths under the same sources.
+  std::vector<double> key() const;
   // Vertical depth of gases over the ground, per bin.
   std::vector<float> gas_depth(const SpectralState& state) const;
 

@@ -1,7 +1,9 @@
 #include "scheduler/bins.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "scheduler/air_bins.h"
 #include "scheduler/air_choice.h"
@@ -274,32 +276,87 @@ void add_biases(std::span<const BinReport> reports, BandBiases& to) {
     if (!reports[s].bias.empty()) to[{reports[s].sensor, s}] = reports[s].bias;
 }
 
-std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor,
-                                   FoundHeat found) {
+// All that the bins of a state depend on but for scene and sources.
+struct BinChooser::Question {
+  SpectralState state;
+  std::vector<Band> bands;
+  std::vector<double> paths;  // through the air; empty without
+  bool white_light = false;
+
+  bool operator==(const Question& o) const {
+    return white_light == o.white_light && paths == o.paths && same(state, o.state) &&
+           std::equal(bands.begin(), bands.end(), o.bands.begin(), o.bands.end(),
+                      [](const Band& a, const Band& b) { return same(a, b); });
+  }
+
+ private:
+  static bool same(const SpectralState& a, const SpectralState& b) {
+    const auto rest = [](const SpectralState& s) {
+      return std::array{s.low_um,       s.high_um,          s.reference_um,
+                        s.choice.error, s.choice.widest_um, static_cast<double>(s.choice.knots)};
+    };
+    return rest(a) == rest(b) && a.bins == b.bins && a.knots == b.knots && a.shares == b.shares;
+  }
+  static bool same(const Band& a, const Band& b) {
+    const Curve &c = a.response, &d = b.response;
+    return a.name == b.name && a.center_um == b.center_um && a.fwhm_um == b.fwhm_um &&
+           c.is_constant() == d.is_constant() && c.outside() == d.outside() && c.wavelength_um() == d.wavelength_um() &&
+           c.value() == d.value();
+  }
+};
+
+struct BinChooser::Answer {
+  std::optional<SpectralState> made;  // nothing: the state stays as it is
+  BinReport report;                   // without the sensor's name
+};
+
+BinChooser::BinChooser(const Scene& scene, std::span<const SourceSpecs> sources, FoundHeat heat)
+    : scene_(scene), sources_(sources), heat_(heat) {}
+BinChooser::~BinChooser() = default;
+
+const BinChooser::Answer& BinChooser::answer(Sensor& sensor, size_t state, bool white_light) {
+  const bool air = !sources_.empty() && sources_[0].air;
+  const std::span<const Band> bands = sensor.bands(state);
+  Question question{sensor.states()[state], {bands.begin(), bands.end()}, {}, white_light};
+  if (air) question.paths = AirPaths(sources_, sensor, state).key();
+  for (const auto& [asked, known] : known_)
+    if (asked == question) return known;
+  ++found_;
+  Answer found;
+  if (air) {
+    StateInAir in_air(scene_, sources_, sensor, state, white_light, heat_);
+    found.made = in_air.make();
+    found.report = in_air.report({}, *found.made);
+  } else {
+    StateBins bins(question.state, bands, spectra_of(scene_, sources_, bands, heat_), white_light);
+    if (question.state.choice.error > 0)
+      found.made = bins.choose();
+    else
+      bins.judge(question.state);
+    found.report = bins.report({}, found.made ? found.made->size() : question.state.size());
+  }
+  constexpr size_t kKept = 64;
+  if (known_.size() == kKept) known_.erase(known_.begin());
+  return known_.emplace_back(std::move(question), std::move(found)).second;
+}
+
+std::vector<BinReport> BinChooser::choose(Sensor& sensor) {
   bool white_light = false;
   for (const Task& t : sensor.tasks())
     for (const Capture& c : t.captures) white_light = white_light || c.bin_by == Capture::BinBy::sun;
   std::vector<BinReport> reports;
   for (size_t s = 0; s < sensor.states().size(); ++s) {
-    const SpectralState state = sensor.states()[s];
-    if (!sources.empty() && sources[0].air) {
-      StateInAir in_air(scene, sources, sensor, s, white_light, found);
-      SpectralState made = in_air.make();
-      reports.push_back(in_air.report(sensor.name(), made));
-      sensor.take_state(s, std::move(made));
-      continue;
-    }
-    StateBins bins(state, sensor.bands(s), spectra_of(scene, sources, sensor.bands(s), found), white_light);
-    if (state.choice.error > 0) {
-      SpectralState chosen = bins.choose();
-      reports.push_back(bins.report(sensor.name(), chosen.size()));
-      sensor.take_state(s, std::move(chosen));
-    } else {
-      bins.judge(state);
-      reports.push_back(bins.report(sensor.name(), state.size()));
-    }
+    const Answer& a = answer(sensor, s, white_light);
+    reports.push_back(a.report);
+    reports.back().sensor = sensor.name();
+    if (a.made) sensor.take_state(s, *a.made);
   }
   return reports;
+}
+
+std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor,
+                                   FoundHeat heat) {
+  return BinChooser(scene, sources, heat).choose(sensor);
 }
 
 }  // namespace suite

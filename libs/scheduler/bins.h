@@ -10,6 +10,7 @@
 #pragma once
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scheduler/seen_spectra.h"
@@ -45,11 +46,32 @@ struct BinReport {
 // What reports, of each state in its turn, know of the bands' errors.
 void add_biases(std::span<const BinReport> reports, BandBiases& to);
 
-// Gives every state of a sensor that asks for it bins for what it sees of the scene. sources: resolved; several when
-// they change with time. found: of surfaces that wait for the balance of heat; they are taken to stay below
-// kSimulatedBelow as long as it is not known. One report a state. Error: a source whose spectrum does not cover the
-// bands.
+// Chooses bins for the sensors of a simulation in their turn. States of the same bands along the same paths through the
+// air get the same bins, which are found once.
+class BinChooser {
+ public:
+  // sources: resolved; several when they change with time. Both must live as long. heat: of surfaces that wait for the
+  // balance of heat; they are taken to stay below kSimulatedBelow as long as it is not known.
+  BinChooser(const Scene& scene, std::span<const SourceSpecs> sources, FoundHeat heat = {});
+  ~BinChooser();
+  // Gives every state of a sensor that asks for it bins for what it sees of the scene. One report a state. Error: a
+  // source whose spectrum does not cover the bands.
+  std::vector<BinReport> choose(Sensor& sensor);
+  size_t found() const { return found_; }  // states whose bins were looked for
+
+ private:
+  struct Question;
+  struct Answer;
+  const Answer& answer(Sensor& sensor, size_t state, bool white_light);
+  const Scene& scene_;
+  std::span<const SourceSpecs> sources_;
+  FoundHeat heat_;
+  std::vector<std::pair<Question, Answer>> known_;  // the last ones
+  size_t found_ = 0;
+};
+
+// The same for one sensor.
 std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor,
-                                   FoundHeat found = {});
+                                   FoundHeat heat = {});
 
 }  // namespace suite

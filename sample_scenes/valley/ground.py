@@ -217,19 +217,26 @@ TUFT, TUFTS = 0.5, 512                             # pixel (m) and pixels of the
 DRILL, DRILLS, ROW_PIXELS = 0.25, 384, 3           # those of the maize, whose rows run north and stand 0.75 m apart
 
 
-def periodic_noise(x, y, cells):
-    """As noise, repeating after so many cells."""
-    i, j = math.floor(x), math.floor(y)
-    corners = [[noise(float((i + a) % cells), float((j + b) % cells)) for a in (0, 1)] for b in (0, 1)]
-    u, v = x - i, y - j
-    u, v = u * u * (3 - 2 * u), v * v * (3 - 2 * v)
-    return (corners[0][0] * (1 - u) + corners[0][1] * u) * (1 - v) + (corners[1][0] * (1 - u) + corners[1][1] * u) * v
+def periodic_noise(pixels, cells):
+    """Rows of noise that repeats after so many cells, over a square of pixels."""
+    lattice = [[noise(float(i), float(j)) for i in range(cells)] for j in range(cells)]
+    places = []
+    for k in range(pixels):
+        x = k * cells / pixels
+        i = math.floor(x)
+        places.append((i % cells, (i + 1) % cells, (x - i) * (x - i) * (3 - 2 * (x - i))))
+    rows = []
+    for j, below, v in places:
+        a, b = lattice[j], lattice[below]
+        rows.append([(a[i] * (1 - u) + a[right] * u) * (1 - v) + (b[i] * (1 - u) + b[right] * u) * v for i, right, u in places])
+    return rows
 
 
 def octaves(pixels, *cells):
     """Rows of a texture that repeats, 0 to 1: noise of so many cells across, each half as strong as the one before."""
     share = [0.5 ** k for k in range(len(cells))]
-    return [[sum(w * periodic_noise(i * n / pixels, j * n / pixels, n) for w, n in zip(share, cells)) / sum(share) for i in range(pixels)] for j in range(pixels)]
+    layers = [periodic_noise(pixels, n) for n in cells]
+    return [[sum(w * v for w, v in zip(share, values)) / sum(share) for values in zip(*rows)] for rows in zip(*layers)]
 
 
 def write_tufts(path):

@@ -65,6 +65,8 @@ FAULTS = [
     Fault("line_energy", "sign", "libs/air/lines.cpp", "(1 / kReference - 1 / temperature));", "(1 / temperature - 1 / kReference));", "unit_air_lines"),
     Fault("mie_orders", "missing term", "libs/air/mie.cpp", "std::ceil(x + 4.5 * std::cbrt(x) + 4)", "std::ceil(x)", "physics_air_mie"),
     Fault("sea_salinity", "factor", "libs/water/sea_water.cpp", "0.01155 / nm;", "0.1155 / nm;", "unit_water_water"),
+    Fault("hidden_sky", "factor", "libs/light/sky_through_water.cpp", "tabulated() ? knots_[k].density(direction) : 0;",
+          "tabulated() ? 1.05 * knots_[k].density(direction) : 0;", "physics_transport_water_chain"),
     # heat
     Fault("slab_quadratic", "factor", "libs/thermal/slab.cpp", "k2[j] * (squares + a * b) * (1.0 / 3)", "k2[j] * (squares + a * b) * (1.0 / 2)",
           "unit_thermal_models|physics_thermal_slab"),

@@ -25,6 +25,13 @@ class HeatOperatorRun : public ProgramsTest<HeatOperatorRun> {
   static void SetUpTestSuite() {
     make_folder();
     run_command("cp -r " SUITE_SOURCE_DIR "/sample_scenes/summer_street/. " + folder_->path());
+    // One camera of the four, which look at the same: bins through the air are found for each.
+    std::string sim = read_text(*folder_ / "sim.yaml");
+    const std::string camera = "  - kind: frame_camera\n";
+    const size_t second = sim.find(camera, sim.find(camera) + 1);
+    ASSERT_NE(second, std::string::npos);
+    sim.erase(second);
+    write_file(*folder_ / "sim.yaml", std::string_view(sim));
     // No car leaves on a date of its own, so that other days have the same scene.
     std::string scene = read_text(*folder_ / "scene.yaml");
     const std::string leaves = ", disappears: 2001-07-14T23:00:00Z";
@@ -198,8 +205,7 @@ TEST_F(HeatOperatorRun, WhatDoesNotFitIsRefused) {
 TEST_F(HeatOperatorRun, OneRankFindsForAll) {
   if (std::string(SUITE_MPIEXEC).empty()) GTEST_SKIP() << "MPI was not found when this build was configured";
   const std::string small =
-      " -q --set sensors.0.columns=20 --set sensors.0.rows=15 --set sensors.0.pitch_um=600 --set sensors.0.paths=2"
-      " --set sensors.1.paths=1 --set sensors.2.paths=1 --set sensors.3.paths=1";
+      " -q --set sensors.0.columns=20 --set sensors.0.rows=15 --set sensors.0.pitch_um=600 --set sensors.0.paths=2";
   // The same temperatures as of a search of its own: OtherWeatherIsThatOfAFreshSearch.
   const CommandResult alone =
       run("dirsig-render sim.yaml -o alone --heat-operator first/heat_operator.h5" + kFew + small);

@@ -89,7 +89,7 @@ TEST_F(RoofInWeather, ShowsWhatIsExpected) {
 
 // A job in parts that are given the temperatures has the bytes of one run that finds them, points included.
 TEST_F(RoofInWeather, PartsTakeTheTemperaturesOfAFile) {
-  std::string few = "--paths 2";
+  std::string few = "--paths 2 --set heat.elements=100";
   for (int s = 0; s < 3; ++s) few += strf(" --set sensors.%d.columns=12 --set sensors.%d.rows=9", s, s);
   render("out", few);
   for (const char* part : {"1", "2"})
@@ -102,7 +102,7 @@ TEST_F(RoofInWeather, PartsTakeTheTemperaturesOfAFile) {
 }
 
 TEST_F(RoofInWeather, PointsNeedWhatElementsWereFoundWith) {
-  render("out", "--heat-only --set heat.final_gather=false");
+  render("out", "--heat-only --set heat.final_gather=false --set heat.elements=50 --set heat.paths=8");
   const CommandResult r = run("dirsig-render sim.yaml -o again --heat out/heat.h5");
   EXPECT_EQ(r.code, 1);
   EXPECT_THAT(r.err, HasSubstr("holds temperatures of elements alone, and `final_gather` asks for points"));

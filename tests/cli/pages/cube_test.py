@@ -174,13 +174,15 @@ sensors:
                 self.assertTrue(((got == 0) == (wanted == 0)).all())
             self.assertEqual(browser.faults, [])
 
-    def test_224_bands_of_512_by_512(self):
-        values, errors, _ = make_cube(self.folder, 224, 512)
+    def test_224_bands(self):
+        """Of 512 x 512 pixels with SUITE_LONG, of a quarter without: a page a quarter as large, opened as fast for its size."""
+        size = 512 if os.environ.get("SUITE_LONG") else 256
+        values, errors, _ = make_cube(self.folder, 224, size)
         page = Path(KEEP or self.folder) / "big.html"
         done = view("-o", self.folder, "--view", page, "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
         # 24 bits a value and its error took 224 MiB; waves under noise of 1 % take 10 bits.
-        self.assertLess(page.stat().st_size, 100 << 20)
+        self.assertLess(page.stat().st_size, 100 * 4 * size ** 2)
         with Browser() as browser:
             begin = time.monotonic()
             browser.open(page)
@@ -188,18 +190,18 @@ sensors:
             cpu = browser.cpu_seconds()
             picture, ready = browser.run("pictureAt") / 1000, browser.run("readyAt") / 1000
             begin = time.monotonic()
-            self.click_pixel(browser, 300, 200, 512, 512)
+            self.click_pixel(browser, 150, 100, size, size)
             got = self.picked(browser)
             click = time.monotonic() - begin
             print(f"{page.stat().st_size / 2 ** 20:.0f} MiB: picture after {picture:.3f} s, all after {ready:.3f} s "
                   f"(opened in {seconds:.2f} s, {cpu:.2f} s of CPU), a spectrum in {click:.2f} s")
             column, row = browser.run("[state.picks[0].column, state.picks[0].row]")
-            self.assertLessEqual(max(abs(column - 300), abs(row - 200)), 1)  # places of clicks are whole pixels of the window
+            self.assertLessEqual(max(abs(column - 150), abs(row - 100)), 1)  # places of clicks are whole pixels of the window
             np.testing.assert_allclose(got[0], values[:, row, column], rtol=2 ** -11)
             np.testing.assert_allclose(got[1], errors[:, row, column], rtol=0.03)
             self.keep(browser, "cube_big")
             # All of it, in the processor's time: others use this machine too.
-            self.assertLess(cpu, 3)
+            self.assertLess(cpu, 1 + 2 * (size / 512) ** 2)  # the browser's own start takes some tenths of a second
             self.assertLess(picture, ready)
             self.assertEqual(browser.faults, [])
 

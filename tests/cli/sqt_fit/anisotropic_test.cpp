@@ -37,7 +37,7 @@ std::vector<std::byte> tabulated(const sqt::Function& model) {
           if (out.z > 0) model.value(out, in, {&f, 1});
           slice.push_back(static_cast<float>(f * std::max(0.0, out.z)));
         }
-      for (int channel = 0; channel < 3; ++channel) values.insert(values.end(), slice.begin(), slice.end());
+      values.insert(values.end(), slice.begin(), slice.end());
     }
   b.bytes("description", "brushed metal, tabulated");
   b.bytes("jacobian", std::string(1, '\0'));
@@ -46,7 +46,8 @@ std::vector<std::byte> tabulated(const sqt::Function& model) {
   b.floats("ndf", {4, 5}, std::vector<float>(20, 1.0f));
   b.floats("sigma", {4, 6}, std::vector<float>(24, 1.0f));
   b.floats("vndf", {azimuths, thetas, 2, 2}, std::vector<float>(azimuths * thetas * 4, 1.0f));
-  b.floats("rgb", {azimuths, thetas, 3, rows, columns}, values);
+  b.floats("wavelengths", {1}, {550});  // each channel would be fitted by itself, at the same cost
+  b.floats("spectra", {azimuths, thetas, 1, rows, columns}, values);
   return b.build();
 }
 

@@ -81,11 +81,11 @@ TEST(SqtFitCli, SameBytesForAnyThreadCount) {
 TEST(SqtFitCli, PromisesThatCannotBeKept) {
   const TempFolder folder;
   const std::string out = folder / "x.sqt";
-  const CommandResult lax = run_command(kFit + kWard + "-q --max-bytes 100 -o " + out);
+  const CommandResult lax = run_command(kFit + kRough + "-q --max-bytes 100 -o " + out);
   EXPECT_EQ(lax.code, 0);
   EXPECT_NE(lax.err.find("100 bytes cannot be kept"), std::string::npos) << lax.err;
   std::filesystem::remove(out);
-  const CommandResult strict = run_command(kFit + kWard + "-q --strict --max-bytes 100 -o " + out);
+  const CommandResult strict = run_command(kFit + kRough + "-q --strict --max-bytes 100 -o " + out);
   EXPECT_EQ(strict.code, 1);
   EXPECT_FALSE(file_exists(out));
 }

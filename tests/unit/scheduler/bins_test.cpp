@@ -102,6 +102,59 @@ TEST(Bins, TellWhatRemainsWhereLinesAreTooFine) {
   EXPECT_LE(sensor.state().size(), 512u);
 }
 
+AirSpec summer() {
+  AirSpec air;
+  air.profile = standard_profile("midlatitude_summer");
+  air.gases = shared_builtin_gases();
+  return air;
+}
+
+bool alike(const SpectralState& a, const SpectralState& b) {
+  return a.bins == b.bins && a.knots == b.knots && a.shares == b.shares;
+}
+
+// Sensors of a simulation get what each would get by itself; those that are alike are not looked at again.
+struct Asked {
+  BinSensor sensor;
+  bool anew;
+};
+void expect_as_alone(const SourceSpecs& sources, std::vector<Asked> asked) {
+  BinChooser chooser(*kScene, {&sources, 1});
+  size_t found = 0;
+  for (Asked& a : asked) {
+    BinSensor alone = a.sensor;
+    const std::string by_itself = chosen(alone, *kScene, sources).text();
+    EXPECT_EQ(chooser.choose(a.sensor).at(0).text(), by_itself);
+    EXPECT_TRUE(alike(a.sensor.state(), alone.state())) << by_itself;
+    EXPECT_EQ(chooser.found(), found += a.anew) << by_itself;
+  }
+}
+const std::vector<Ray> kLow{{{0, 0, 500}, {0, 0, -1}, 0}}, kHigh{{{0, 0, 3000}, {0, 0, -1}, 0}};
+
+TEST(Bins, OfSensorsThatAreAlikeAreFoundOnce) {
+  const std::vector<Band> other{kBands[0], Band::gaussian("wide", 0.86, 0.06)},
+      renamed{kBands[0], Band::gaussian("broad", 0.85, 0.06)};
+  expect_as_alone(sun_of(kLine), {{{kLow, kBands, 1, 1e-2}, true},
+                                  {{kLow, kBands, 1, 1e-2}, false},
+                                  {{kHigh, kBands, 1, 1e-2}, false},
+                                  {{kLow, other, 1, 1e-2}, true},
+                                  {{kLow, kBands, 1, 2e-2}, true},
+                                  {{kLow, renamed, 1, 1e-2}, true},
+                                  {{kLow, other, 1, 1e-2}, false}});
+}
+
+// Through air it matters from where and along which way a sensor looks.
+TEST(Bins, OfSensorsThatAreAlikeInAirAreFoundOnce) {
+  SourceSpecs sources = sun_of(kLine);
+  sources.air = std::make_shared<AirSpec>(summer());
+  const std::vector<Band> narrow{Band::gaussian("narrow", 0.7, 0.004)};
+  const std::vector<Ray> slanted{{{0, 0, 500}, dir_from_angles(130 * kDegree, 0), 0}};
+  expect_as_alone(sources, {{{kLow, narrow, 1, 1e-2}, true},
+                            {{kLow, narrow, 1, 1e-2}, false},
+                            {{kHigh, narrow, 1, 1e-2}, true},
+                            {{slanted, narrow, 1, 1e-2}, true}});
+}
+
 TEST(Bins, LeaveNoStretchOfTheWidestStepAlone) {
   const std::vector<Band> bands{Band::rectangular("b", 0.7, 0.1)};
   const Curve sun({0.5, 0.7, 1}, {1000, 1200, 900}, Outside::hold);
