@@ -36,7 +36,7 @@ AskedStates states_of(const Simulation& sim) {
 void follow_heat(Simulation& sim, const Scene& scene, JobOptions& options, const AskedStates& asked) {
   const FoundHeat heat{options.heating.field ? options.heating.field->range()[1] : 0};
   if (!(heat.hottest > kSimulatedBelow)) return;
-  note(strf("surfaces are as hot as %.0f K: bins, chosen for at most %g K, are chosen anew", heat.hottest,
+  note(strf("surfaces are as hot as %.0f K: bins, chosen for at most %g K, are chosen again", heat.hottest,
             kSimulatedBelow));
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   BinChooser chooser(scene, standing, heat);

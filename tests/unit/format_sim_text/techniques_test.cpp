@@ -26,14 +26,14 @@ PipelineOptions read(const std::string& techniques) {
 }
 // Which are on.
 std::vector<bool> on(const PipelineOptions& o) {
-  return {o.explicit_sources, o.refracted_sources, o.volume_chains, o.side_flights, o.gloss_photons > 0};
+  return {o.explicit_sources, o.refracted_sources, o.volume_chains, o.side_flights, o.equiangular, o.gloss_photons > 0};
 }
 
 TEST(Techniques, EachNameSwitchesItsOwnOff) {
-  const std::vector<bool> all(5, true);
+  const std::vector<bool> all(6, true);
   EXPECT_EQ(on(read("")), all);
   const auto named = named_techniques();
-  ASSERT_EQ(std::ranges::count_if(named, [](const NamedTechnique& t) { return t.off != nullptr; }), 5);
+  ASSERT_EQ(std::ranges::count_if(named, [](const NamedTechnique& t) { return t.off != nullptr; }), 6);
   for (size_t i = 0; i < all.size(); ++i) {
     const std::string name = named[i].name;
     std::vector<bool> others = all;
@@ -42,13 +42,14 @@ TEST(Techniques, EachNameSwitchesItsOwnOff) {
     EXPECT_EQ(on(read("techniques: {" + name + ": on}")), all) << name;
   }
   EXPECT_EQ(on(read("techniques: {manifold: off, side_vertex: false}")),
-            (std::vector<bool>{true, false, true, false, true}));
+            (std::vector<bool>{true, false, true, false, true, true}));
 }
 
 TEST(Techniques, OthersAreRefusedWithTheirPlace) {
   EXPECT_THAT(message_of([] { read("techniques: {manifolds: off}"); }),
               AllOf(HasSubstr("sim.yaml:2"), HasSubstr("there is no technique 'manifolds'"),
-                    HasSubstr("one of: light_sampling, manifold, volume_chains, side_vertex, caustic_guide")));
+                    HasSubstr("one of: light_sampling, manifold, volume_chains, side_vertex, "
+                              "equiangular, caustic_guide")));
   EXPECT_THAT(message_of([] { read("techniques: {manifold: 3}"); }), HasSubstr("sim.yaml:2"));
   // Without it light would be missing, which no other technique brings.
   EXPECT_THAT(message_of([] { read("techniques: {adjacency: off}"); }),
