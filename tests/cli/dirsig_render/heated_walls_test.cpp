@@ -67,8 +67,8 @@ class HeatedWalls : public ProgramsTest<HeatedWalls> {
 
 TEST_F(HeatedWalls, BinsFollowTheTemperaturesThatAreFound) {
   const std::string hot = told("");
-  EXPECT_THAT(
-      hot, ContainsRegex("surfaces are as hot as 1[0-9][0-9][0-9] K: bins, chosen for at most 400 K, are chosen again"));
+  EXPECT_THAT(hot, ContainsRegex(
+                       "surfaces are as hot as 1[0-9][0-9][0-9] K: bins, chosen for at most 400 K, are chosen again"));
   EXPECT_EQ(hot.find("[DR603]"), hot.npos);
   EXPECT_THAT(told("--heat out/heat.h5"), HasSubstr("chosen again"));
   EXPECT_THAT(told("--set scene=cool.h5"), Not(HasSubstr("chosen again")));

@@ -60,5 +60,31 @@ TEST(SqtPhase, ForwardPeaksOfLargeParticlesKeepTheirHeight) {
   }
 }
 
+// The figures of functions over the sphere, where half of the pairs are drawn near either pole, are those of a
+// quadrature over the angle. Weights that forget one of the poles are 4 % off in cos_rmse.
+TEST(SqtPhase, ErrorFiguresAreThoseOfAQuadrature) {
+  const auto narrow = model_function("hg:g=0.7"), wide = model_function("hg:g=0.4");
+  const sqt::Reference of_wide(*wide, 5000), of_narrow(*narrow, 200000);
+  const sqt::FitResult fit =
+      sqt::fit_to(*wide, of_wide, {}, {0, 0, 0.9}, [](const sqt::AlignedSource&) { return size_t{0}; });
+  const auto bundle = sqt::make_bundle(fit.fit.data);
+  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("b", 0.55, 0.01)}, 0.01);
+  const auto fitted = bake_phase({"sqt", {}, {}, {{"file", "wide.sqt"}}, bundle}, state);
+  double off = 0, all = 0, squares = 0, of = 0;
+  constexpr int kSteps = 20000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double c = -1 + (i + 0.5) * 2 / kSteps, g = 0.7,
+                 f = (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * c, 1.5));
+    std::vector<float> p(1);
+    fitted->eval(c, p);
+    const double d = double{p[0]} - f;
+    off += std::fabs(d), all += f, squares += d * d, of += f * f;
+  }
+  const sqt::ErrorFigures seen = of_narrow.measure(*bundle).back();
+  std::printf("l1 %.5f (%.5f), cos_rmse %.5f (%.5f)\n", seen.l1, off / all, seen.cos_rmse, std::sqrt(squares / of));
+  EXPECT_NEAR(seen.l1, off / all, 0.01 * off / all);
+  EXPECT_NEAR(seen.cos_rmse, std::sqrt(squares / of), 0.01 * std::sqrt(squares / of));
+}
+
 }  // namespace
 }  // namespace suite
