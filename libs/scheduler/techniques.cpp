@@ -38,11 +38,11 @@ constexpr TechniqueCondition kSplitting[] = {
      "paths in media behind smooth interfaces have multi-vertex NEE"},
     {[](const Facts& f) { return f.options.side_flights; }, "splitting switched on", "switched off"}};
 constexpr TechniqueCondition kEquiangular[] = {
-    kStandard,
-    kSampled,
     {[](const Facts& f) { return f.even_media; }, "media in the scene, without traced air",
      "no media in the scene, or traced air"},
     {[](const Facts& f) { return f.points; }, "a point or spot lamp (16 at most)", "no point or spot lamp"},
+    kStandard,
+    kSampled,
     {[](const Facts& f) { return f.options.equiangular; }, "equiangular sampling switched on", "switched off"}};
 constexpr TechniqueCondition kCausticGuiding[] = {
     {[](const Facts& f) { return f.not_matte > 0; }, "a material that is not Lambertian",
