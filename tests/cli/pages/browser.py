@@ -52,12 +52,13 @@ class Browser:
         os.close(to_read)
         os.close(from_write)
         self._count, self._rest, self._session = 0, b"", None
-        self.faults, self.requests, self._loaded = [], [], False
+        self.faults, self.requests, self._loaded = [], [], set()
         targets = self.call("Target.getTargets")["targetInfos"]
         target = next(t["targetId"] for t in targets if t["type"] == "page")
         self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
+        self.call("Page.setLifecycleEventsEnabled", enabled=True)
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
 
     def __enter__(self):
@@ -123,8 +124,8 @@ class Browser:
                 self.faults.append(f"log: {p['entry']['text']}")
         elif method == "Network.requestWillBeSent":
             self.requests.append(p["request"]["url"][:200])
-        elif method == "Page.loadEventFired":
-            self._loaded = True
+        elif method == "Page.lifecycleEvent" and p["name"] == "load":
+            self._loaded.add(p["loaderId"])
 
     def open(self, path, seconds=120):
         """Opens a file and waits until all of it is there. A browser that dies of its own in this is started once more;
@@ -138,10 +139,12 @@ class Browser:
             self._open(path, seconds)
 
     def _open(self, path, seconds):
-        self._loaded = False
-        self.call("Page.navigate", url=Path(path).resolve().as_uri(), seconds=seconds)
+        answer = self.call("Page.navigate", url=Path(path).resolve().as_uri(), seconds=seconds)
+        if "loaderId" not in answer:
+            raise RuntimeError(f"{path}: {answer.get('errorText', 'the browser loads nothing')}")
         until = time.monotonic() + seconds
-        while not self._loaded:
+        # The load event of the blank page before may come late: only this document's own counts.
+        while answer["loaderId"] not in self._loaded:
             self._next(until)
 
     def cpu_seconds(self):
@@ -159,6 +162,16 @@ class Browser:
         if "exceptionDetails" in answer:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails'].get('exception', {}).get('description')}")
         return answer["result"].get("value")
+
+    def when(self, expression, seconds=120):
+        """The value of an expression as soon as it is neither undefined nor null: what a page sets with its next frame is
+        not there yet when it has loaded. RuntimeError: not in time."""
+        until = time.monotonic() + seconds
+        while (value := self.run(expression)) is None:
+            if time.monotonic() > until:
+                raise RuntimeError(f"{expression}: still undefined after {seconds} s")
+            time.sleep(0.05)
+        return value
 
     def mouse(self, kind, x, y, button="none", **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, **more)

@@ -138,7 +138,7 @@ world: [{place: hill}, %s]
         with Browser() as browser:
             browser.open(page)
             self.settle(browser)
-            print(f"{page.stat().st_size / 1e6:.1f} MB: {browser.run('readyAt') / 1000:.2f} s, {browser.cpu_seconds():.2f} s of CPU")
+            print(f"{page.stat().st_size / 1e6:.1f} MB: {browser.when('window.readyAt') / 1000:.2f} s, {browser.cpu_seconds():.2f} s of CPU")
             lacks = browser.run("document.getElementById('lacks').innerText")
             moved = float(re.search(r"moved by up to (\S+) m", lacks)[1])
             self.assertLess(moved, 3)  # cells of some two metres
