@@ -25,63 +25,90 @@ std::vector<double> residual(const std::function<std::span<const double>(size_t)
   return r;
 }
 
-// Solves for the chosen columns and drops those that would not stay positive.
-void settle(const std::function<std::span<const double>(size_t)>& column, std::span<const double> b,
-            NonNegativeFit& fit) {
+// Columns under Householder reflections, one after the other: what comes to the end leaves those before it as they are.
+class Factors {
+ public:
+  explicit Factors(std::span<const double> b) : b_(b) {}
+
+  void add(std::span<const double> column) {
+    const size_t k = a_.size();
+    std::vector<double>& v = a_.emplace_back(column.begin(), column.end());
+    for (size_t j = 0; j < std::min(k, b_.size()); ++j) reflect(j, v);
+    diagonal_.push_back(0), square_.push_back(0);
+    if (k >= b_.size()) return;  // more columns than rows
+    const double whole = std::sqrt(dot(v, v)), norm = std::sqrt(dot(v, v, k));
+    if (!(norm > 1e-12 * whole)) return;
+    diagonal_[k] = v[k] > 0 ? -norm : norm;
+    v[k] -= diagonal_[k];
+    square_[k] = dot(v, v, k);
+  }
+  void keep_first(size_t n) { a_.resize(n), diagonal_.resize(n), square_.resize(n); }
+  size_t size() const { return a_.size(); }
+
+  std::vector<double> solve() const {
+    const size_t ranks = std::min(a_.size(), b_.size());
+    std::vector<double> y(b_.begin(), b_.end()), x(a_.size(), 0.0);
+    for (size_t k = 0; k < ranks; ++k) reflect(k, y);
+    for (size_t k = ranks; k-- > 0;) {
+      if (diagonal_[k] == 0) continue;
+      double sum = y[k];
+      for (size_t j = k + 1; j < ranks; ++j) sum -= a_[j][k] * x[j];
+      x[k] = sum / diagonal_[k];
+    }
+    return x;
+  }
+
+ private:
+  void reflect(size_t k, std::vector<double>& v) const {
+    if (diagonal_[k] == 0) return;
+    const double t = 2 * dot(a_[k], v, k) / square_[k];
+    for (size_t i = k; i < v.size(); ++i) v[i] -= t * a_[k][i];
+  }
+
+  std::span<const double> b_;
+  std::vector<std::vector<double>> a_;
+  std::vector<double> diagonal_, square_;  // 0: depends on the columns before it
+};
+
+// Solves for the chosen columns, the first of which stand in `factors`, and drops those that would not stay positive.
+void settle(const std::function<std::span<const double>(size_t)>& column, Factors& factors, NonNegativeFit& fit) {
   while (!fit.chosen.empty()) {
-    std::vector<std::vector<double>> columns;
-    for (const size_t j : fit.chosen) columns.emplace_back(column(j).begin(), column(j).end());
-    const std::vector<double> wanted = least_squares(columns, b);
+    for (size_t k = factors.size(); k < fit.chosen.size(); ++k) factors.add(column(fit.chosen[k]));
+    const std::vector<double> wanted = factors.solve();
     // Go towards the solution as far as nothing turns negative.
     double step = 1;
     for (size_t k = 0; k < wanted.size(); ++k)
       if (!(wanted[k] > 0)) step = std::min(step, fit.x[k] / (fit.x[k] - wanted[k]));
     for (size_t k = 0; k < wanted.size(); ++k) fit.x[k] += step * (wanted[k] - fit.x[k]);
     if (step == 1 && std::all_of(wanted.begin(), wanted.end(), [](double v) { return v > 0; })) return;
-    size_t kept = 0;
+    size_t kept = 0, same = wanted.size();
     for (size_t k = 0; k < wanted.size(); ++k) {
-      if (!(wanted[k] > 0) && fit.x[k] <= 1e-12) continue;
+      if (!(wanted[k] > 0) && fit.x[k] <= 1e-12) {
+        same = std::min(same, k);
+        continue;
+      }
       fit.chosen[kept] = fit.chosen[k], fit.x[kept++] = fit.x[k];
     }
     if (kept == fit.chosen.size()) return;
     fit.chosen.resize(kept), fit.x.resize(kept);
+    factors.keep_first(same);
   }
 }
 
 }  // namespace
 
 std::vector<double> least_squares(const std::vector<std::vector<double>>& columns, std::span<const double> b) {
-  const size_t n = columns.size(), m = b.size();
-  std::vector<std::vector<double>> a = columns;
-  std::vector<double> y(b.begin(), b.end()), diagonal(n, 0.0), x(n, 0.0);
-  const size_t ranks = std::min(n, m);
-  for (size_t k = 0; k < ranks; ++k) {
-    const double whole = std::sqrt(dot(a[k], a[k])), norm = std::sqrt(dot(a[k], a[k], k));
-    if (!(norm > 1e-12 * whole)) continue;
-    diagonal[k] = a[k][k] > 0 ? -norm : norm;
-    a[k][k] -= diagonal[k];
-    const double square = dot(a[k], a[k], k);
-    const auto reflect = [&](std::vector<double>& v) {
-      const double t = 2 * dot(a[k], v, k) / square;
-      for (size_t i = k; i < m; ++i) v[i] -= t * a[k][i];
-    };
-    for (size_t j = k + 1; j < n; ++j) reflect(a[j]);
-    reflect(y);
-  }
-  for (size_t k = ranks; k-- > 0;) {
-    if (diagonal[k] == 0) continue;
-    double sum = y[k];
-    for (size_t j = k + 1; j < ranks; ++j) sum -= a[j][k] * x[j];
-    x[k] = sum / diagonal[k];
-  }
-  return x;
+  Factors factors(b);
+  for (const std::vector<double>& column : columns) factors.add(column);
+  return factors.solve();
 }
 
 void fit_non_negative(std::span<const size_t> candidates, const std::function<std::span<const double>(size_t)>& column,
                       std::span<const double> b, const std::function<bool(size_t)>& preferred,
                       const std::function<bool(const NonNegativeFit&)>& done, size_t most, NonNegativeFit& fit) {
   constexpr double kPreference = 3;
-  settle(column, b, fit);
+  Factors factors(b);
+  settle(column, factors, fit);
   double before = INFINITY;
   while (!done(fit) && fit.chosen.size() < most) {
     const std::vector<double> r = residual(column, b, fit);
@@ -100,7 +127,7 @@ void fit_non_negative(std::span<const size_t> candidates, const std::function<st
     }
     if (!best) return;
     fit.chosen.push_back(*best), fit.x.push_back(0);
-    settle(column, b, fit);
+    settle(column, factors, fit);
   }
 }
 
