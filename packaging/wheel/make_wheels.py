@@ -19,8 +19,8 @@ ROOT = HERE.parents[1]
 PLATFORM = "manylinux_2_35_x86_64"
 PROGRAMS = "remote_scenes_programs"
 LIBRARIES = "remote_scenes.libs"
-PREP = {"scene-prep", "assimp.so"}
-"""What is part of the GPL's wheel, with the libraries that nothing else needs: assimp reads models, which scene-prep alone does."""
+PREP = {"scene-prep", "assimp.so", "vdb.so"}
+"""What is part of the GPL's wheel, with the libraries that nothing else needs: scene-prep alone reads models and volumes."""
 COMPILED_IN = {"remote-scenes": ["libcli11-dev", "nlohmann-json3-dev", "libtinygltf-dev", "libfmt-dev"],
                "remote-scenes-prep": ["libcgal-dev"]}
 """Debian packages of which code is in the binaries themselves."""
