@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace suite {
@@ -30,17 +31,16 @@ class Factors {
  public:
   explicit Factors(std::span<const double> b) : b_(b) {}
 
-  void add(std::span<const double> column) {
-    const size_t k = a_.size();
-    std::vector<double>& v = a_.emplace_back(column.begin(), column.end());
-    for (size_t j = 0; j < std::min(k, b_.size()); ++j) reflect(j, v);
-    diagonal_.push_back(0), square_.push_back(0);
-    if (k >= b_.size()) return;  // more columns than rows
-    const double whole = std::sqrt(dot(v, v)), norm = std::sqrt(dot(v, v, k));
-    if (!(norm > 1e-12 * whole)) return;
-    diagonal_[k] = v[k] > 0 ? -norm : norm;
-    v[k] -= diagonal_[k];
-    square_[k] = dot(v, v, k);
+  // `column(j)` for all of `added`. Columns that come together are reflected together: each one's sum waits for its
+  // own last addition only, and its bits do not depend on its company.
+  void add(std::span<const size_t> added, const std::function<std::span<const double>(size_t)>& column) {
+    const size_t first = a_.size(), ranks = std::min(first + added.size(), b_.size());
+    for (const size_t j : added) a_.emplace_back(column(j).begin(), column(j).end());
+    diagonal_.resize(a_.size(), 0.0), square_.resize(a_.size(), 0.0);
+    for (size_t k = 0; k < ranks; ++k) {
+      if (k >= first) make_reflection(k);
+      reflect_from(k, std::max(k + 1, first));
+    }
   }
   void keep_first(size_t n) { a_.resize(n), diagonal_.resize(n), square_.resize(n); }
   size_t size() const { return a_.size(); }
@@ -59,10 +59,34 @@ class Factors {
   }
 
  private:
+  void make_reflection(size_t k) {
+    std::vector<double>& v = a_[k];
+    const double whole = std::sqrt(dot(v, v)), norm = std::sqrt(dot(v, v, k));
+    if (!(norm > 1e-12 * whole)) return;
+    diagonal_[k] = v[k] > 0 ? -norm : norm;
+    v[k] -= diagonal_[k];
+    square_[k] = dot(v, v, k);
+  }
   void reflect(size_t k, std::vector<double>& v) const {
     if (diagonal_[k] == 0) return;
     const double t = 2 * dot(a_[k], v, k) / square_[k];
     for (size_t i = k; i < v.size(); ++i) v[i] -= t * a_[k][i];
+  }
+  void reflect_from(size_t k, size_t j) {
+    if (diagonal_[k] == 0) return;
+    for (; j + 4 <= a_.size(); j += 4) {
+      const double* const u = a_[k].data();
+      double *const v0 = a_[j].data(), *const v1 = a_[j + 1].data(), *const v2 = a_[j + 2].data(),
+                    *const v3 = a_[j + 3].data();
+      double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+      for (size_t i = k; i < b_.size(); ++i)
+        s0 += u[i] * v0[i], s1 += u[i] * v1[i], s2 += u[i] * v2[i], s3 += u[i] * v3[i];
+      const double t0 = 2 * s0 / square_[k], t1 = 2 * s1 / square_[k], t2 = 2 * s2 / square_[k],
+                   t3 = 2 * s3 / square_[k];
+      for (size_t i = k; i < b_.size(); ++i)
+        v0[i] -= t0 * u[i], v1[i] -= t1 * u[i], v2[i] -= t2 * u[i], v3[i] -= t3 * u[i];
+    }
+    for (; j < a_.size(); ++j) reflect(k, a_[j]);
   }
 
   std::span<const double> b_;
@@ -73,7 +97,7 @@ class Factors {
 // Solves for the chosen columns, the first of which stand in `factors`, and drops those that would not stay positive.
 void settle(const std::function<std::span<const double>(size_t)>& column, Factors& factors, NonNegativeFit& fit) {
   while (!fit.chosen.empty()) {
-    for (size_t k = factors.size(); k < fit.chosen.size(); ++k) factors.add(column(fit.chosen[k]));
+    factors.add(std::span(fit.chosen).subspan(factors.size()), column);
     const std::vector<double> wanted = factors.solve();
     // Go towards the solution as far as nothing turns negative.
     double step = 1;
@@ -98,8 +122,10 @@ void settle(const std::function<std::span<const double>(size_t)>& column, Factor
 }  // namespace
 
 std::vector<double> least_squares(const std::vector<std::vector<double>>& columns, std::span<const double> b) {
+  std::vector<size_t> all(columns.size());
+  std::iota(all.begin(), all.end(), size_t{0});
   Factors factors(b);
-  for (const std::vector<double>& column : columns) factors.add(column);
+  factors.add(all, [&](size_t j) { return std::span<const double>(columns[j]); });
   return factors.solve();
 }
 
