@@ -1,0 +1,182 @@
+// Polarised light at interfaces and in frames: near Brewster's angle, at grazing incidence, between media that hardly
+// differ, on metals, after many reflections, near the zenith.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "extreme/case.h"
+#include "optics/fresnel_mueller.h"
+
+namespace suite::extreme {
+
+namespace {
+
+using Long = long double;
+using Amplitude = std::complex<Long>;
+
+struct Amplitudes {
+  Amplitude s, p;
+};
+
+// Fresnel's amplitudes with 64 bits of mantissa; the cosine as it is stored.
+Amplitudes reflected(double cos_incident, std::complex<double> index) {
+  const Long c = cos_incident;
+  const Amplitude n2 = Amplitude(index) * Amplitude(index);
+  Amplitude q = std::sqrt(n2 - (1 - c * c));
+  if (q.imag() < 0) q = -q;
+  return {(c - q) / (c + q), (n2 * c - q) / (n2 * c + q)};
+}
+
+// Near Brewster's angle hardly any light of the plane of incidence is reflected: its share of that across, off the
+// share by amplitudes, over the reflectance across. The difference of both is what a matrix holds.
+double off_brewster(double away) {
+  const double index = 1.5, c = std::cos(std::atan(index) + away);
+  const PlaneBlocks m = fresnel_reflection(c, index);
+  const Amplitudes exact = reflected(c, index);
+  return static_cast<double>(std::fabs((m.a + m.b) - std::norm(exact.p)) / std::norm(exact.s));
+}
+
+// What passes at grazing incidence, as a share of itself.
+double off_grazing(double c) {
+  const double index = 1.5;
+  const PlaneBlocks m = fresnel_transmission(c, index);
+  const Long n2 = Long(index) * index, q = std::sqrt(n2 - 1 + Long(c) * c);
+  const Long s = 4 * c * q / ((c + q) * (c + q)), p = 4 * n2 * c * q / ((n2 * c + q) * (n2 * c + q));
+  return static_cast<double>(std::max(std::fabs((m.a - m.b) / s - 1), std::fabs((m.a + m.b) / p - 1)));
+}
+
+// Reflectance across the plane at 45 degrees between media that hardly differ, as a share of itself.
+double off_no_step(double step) {
+  const double c = std::sqrt(0.5), index = 1 + step;
+  const PlaneBlocks m = fresnel_reflection(c, index);
+  return static_cast<double>(std::fabs((m.a - m.b) / std::norm(reflected(c, index).s) - 1));
+}
+
+// All elements of a metal's matrix at 70 degrees; they are at most 1.
+double off_metal(double k) {
+  const double c = std::cos(70 * kDegree);
+  const std::complex<double> index(0.5, k);
+  const PlaneBlocks m = fresnel_reflection(c, index);
+  const Amplitudes e = reflected(c, index);
+  const Amplitude x = e.p * std::conj(e.s);
+  const Long found[] = {m.a - (std::norm(e.p) + std::norm(e.s)) / 2, m.b - (std::norm(e.p) - std::norm(e.s)) / 2,
+                        m.c - x.real(), m.d - x.imag()};
+  Long worst = 0;
+  for (const Long v : found) worst = std::max(worst, std::fabs(v));
+  return static_cast<double>(worst);
+}
+
+// Light at 45 degrees after n total reflections in one plane: its V against the sum of the phases.
+double off_rhombs(double n) {
+  const double index = 1 / 1.51, c = std::cos(54.6 * kDegree);
+  const Mueller one = fresnel_reflection(c, index).matrix();
+  Stokes light{1, 0, 1, 0};
+  for (int i = 0; i < static_cast<int>(n); ++i) light = one * light;
+  const Amplitudes e = reflected(c, index);
+  const Long phase = std::arg(e.p * std::conj(e.s)) * std::floor(Long(n));
+  return static_cast<double>(
+      std::max(std::fabs(std::fabs(light[3]) - std::fabs(std::sin(phase))), std::fabs(light[2] - std::cos(phase))));
+}
+
+// Two polarizers across each other pass their leak, however small.
+double off_crossed(double leak) {
+  const Mueller both = polarizer(0.3 + kPi / 2, leak) * polarizer(0.3, leak);
+  return std::fabs(both(0, 0) / leak - 1);
+}
+
+// A frame near the zenith: at right angles to the light, of unit length, right-handed.
+double off_frame(double from_zenith) {
+  const Dir k(std::sin(from_zenith) * std::cos(1.1), std::sin(from_zenith) * std::sin(1.1), std::cos(from_zenith));
+  const PolarFrame f = meridian_frame(k);
+  const Vec3 third = cross(f.e1, f.e2);
+  return std::max({std::fabs(dot(f.e1, k)), std::fabs(dot(f.e2, k)), std::fabs(dot(f.e1, f.e2)),
+                   std::fabs(length(f.e1) - 1), std::fabs(dot(third, k) - 1)});
+}
+
+// Frames of two directions that are nearly one, turned there and back.
+double off_turned_back(double apart) {
+  const Dir k(std::sin(0.7 + apart), 0, std::cos(0.7 + apart));
+  const PolarFrame a = meridian_frame(k);
+  const Vec3 aside = a.e1 * std::cos(apart) + a.e2 * std::sin(apart);
+  const PolarFrame b{aside, cross(Vec3(k.x, k.y, k.z), aside)};
+  const Mueller m = frame_rotation(b, a.e1) * frame_rotation(a, b.e1);
+  double worst = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) worst = std::max(worst, std::fabs(m(i, j) - (i == j ? 1 : 0)));
+  return worst;
+}
+
+}  // namespace
+
+std::vector<Case> polarisation_cases() {
+  using N = const Numerics&;
+  const std::string exact = "Fresnel's amplitudes in long double";
+  return {
+      {"polarisation",
+       "light in the plane of incidence near Brewster's angle",
+       exact,
+       "of the reflectance across",
+       1e-15,
+       [](N, double x) { return off_brewster(x); },
+       {"angle from Brewster's", "rad", 0.1, 1e-9, 10},
+       {}},
+      {"polarisation",
+       "light that passes at grazing incidence",
+       exact,
+       "1",
+       1e-12,
+       [](N, double x) { return off_grazing(x); },
+       {"cosine of incidence", "1", 0.1, 1e-12, 10},
+       {}},
+      {"polarisation",
+       "reflectance of an interface that hardly refracts",
+       exact,
+       "1",
+       1e-4,
+       [](N, double x) { return off_no_step(x); },
+       {"index - 1", "1", 0.1, 1e-10, 10},
+       {}},
+      {"polarisation",
+       "matrix of a metal at 70 deg",
+       exact,
+       "1",
+       1e-13,
+       [](N, double x) { return off_metal(x); },
+       {"absorption index k", "1", 1, 1e6, 10},
+       {}},
+      {"polarisation",
+       "V after many total reflections",
+       exact,
+       "1",
+       1e-10,
+       [](N, double x) { return off_rhombs(x); },
+       {"reflections", "1", 1, 65536, 4},
+       {}},
+      {"polarisation",
+       "crossed polarizers",
+       "their leak",
+       "1",
+       1e-6,
+       [](N, double x) { return off_crossed(x); },
+       {"leak", "1", 0.1, 1e-9, 10},
+       {}},
+      {"polarisation",
+       "meridian frame near the zenith",
+       "its definition",
+       "1",
+       1e-12,
+       [](N, double x) { return off_frame(x); },
+       {"angle from the zenith", "rad", 0.1, 1e-16, 10},
+       {}},
+      {"polarisation",
+       "frames turned there and back",
+       "the identity",
+       "1",
+       1e-12,
+       [](N, double x) { return off_turned_back(x); },
+       {"angle between them", "rad", 0.1, 1e-12, 10},
+       {}},
+  };
+}
+
+}  // namespace suite::extreme
