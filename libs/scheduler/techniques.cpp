@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "transport/equiangular_law.h"
 #include "transport/lost_light.h"
 
 namespace suite {
@@ -40,7 +41,9 @@ constexpr TechniqueCondition kSplitting[] = {
 constexpr TechniqueCondition kEquiangular[] = {
     {[](const Facts& f) { return f.even_media; }, "media in the scene, without traced air",
      "no media in the scene, or traced air"},
-    {[](const Facts& f) { return f.points; }, "a point or spot lamp (16 at most)", "no point or spot lamp"},
+    {[](const Facts& f) { return f.points > 0; }, "a point or spot lamp", "no point or spot lamp"},
+    {[](const Facts& f) { return f.points <= kMostEquiangularLamps; }, "at most 16 of them",
+     "more than 16 point and spot lamps"},
     kStandard,
     kSampled,
     {[](const Facts& f) { return f.options.equiangular; }, "equiangular sampling switched on", "switched off"}};
@@ -133,7 +136,7 @@ TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, c
     f.small_lights = f.small_lights || parts > 0;
     f.sized_lights = f.sized_lights || parts > light->hardly_met(kNever).size();
     f.beams = f.beams || (!light->in_scene() && parts > 0);
-    f.points = f.points || (light->in_scene() && !light->hardly_met(kNever).empty());
+    if (light->in_scene()) f.points += light->hardly_met(kNever).size();
   }
   const bool traced = sources.air && sources.air->scattering == AirScattering::traced;
   f.media = scene.media.size() + traced;

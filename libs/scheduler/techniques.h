@@ -22,7 +22,7 @@ struct TechniqueFacts {
   bool small_lights = false;  // sun, moon or lamps: what continuations hardly find
   bool sized_lights = false;  // of them such as have a size, so that continuations may meet them
   bool beams = false;         // sun or moon
-  bool points = false;        // lamps that are points
+  size_t points = 0;          // lamps that are points
   size_t media = 0;
   bool even_media = false;                      // media of the scene, and no traced air
   size_t smooth = 0, not_matte = 0, rough = 0;  // materials: Dirac refraction; not Lambertian; these with wide lobes

@@ -4,11 +4,15 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "math/vec.h"
 
 namespace suite {
+
+// Point lamps of a scene for which flights look for such places; each flight looks at all of them.
+inline constexpr size_t kMostEquiangularLamps = 16;
 
 class EquiangularLaw {
  public:

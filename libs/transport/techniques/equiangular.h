@@ -44,7 +44,6 @@ class Equiangular {
 
  private:
   static constexpr double kCarries = 4, kLeast = 0.05, kNear = 0.25;
-  static constexpr size_t kMostLamps = 16;  // beyond that a flight would look at too many
   struct Lamp {
     const SampledLight* light;
     size_t member;
@@ -55,8 +54,8 @@ class Equiangular {
     Vec3 from;
     double rate[kMaxKnots];   // s_k, 1/m
     double share[kMaxKnots];  // P_k r_k
-    std::array<EquiangularLaw, kMostLamps> of;
-    std::array<double, kMostLamps> chance;  // q_m
+    std::array<EquiangularLaw, kMostEquiangularLamps> of;
+    std::array<double, kMostEquiangularLamps> chance;  // q_m
   };
   struct Vertex {  // of each shadow ray
     uint32_t path;
@@ -110,11 +109,11 @@ void Equiangular<Wave>::prepare(const Wave& wave) {
   for (const SampledLight& light : wave.lights.sampled) {
     if (light.nature.far || !light.nature.placed) continue;
     const size_t before = lamps_.size();
-    for (size_t m = 0; m < light.light->members() && lamps_.size() <= kMostLamps; ++m)
+    for (size_t m = 0; m < light.light->members() && lamps_.size() <= kMostEquiangularLamps; ++m)
       if (light.light->is_point(m)) lamps_.push_back({&light, m});
     if (lamps_.size() > before) lights_.push_back(&light);
   }
-  if (lamps_.size() > kMostLamps) lamps_.clear();
+  if (lamps_.size() > kMostEquiangularLamps) lamps_.clear();
   if (!lamps_.empty()) flights_.resize(wave.paths.size());
 }
 
@@ -146,7 +145,7 @@ bool Equiangular<Wave>::start(Wave& wave, uint32_t p, double length) {
   // Free flights put vertices near lamps by themselves that are not near in mean free paths.
   const double rate = wave.space.scattering_around(p, 0), near = kNear / rate;
   double sum = 0;
-  std::array<std::optional<Vec3>, kMostLamps> places;
+  std::array<std::optional<Vec3>, kMostEquiangularLamps> places;
   bool any = false;
   for (size_t m = 0; m < lamps_.size(); ++m) {
     places[m] = lamps_[m].light->light->point_of(lamps_[m].member, path.time);

@@ -66,11 +66,14 @@ SourceSpecs sun() {
   s.add(SunSpec{normalized(Vec3{0.1, -1, 0.8}), 0.01, Curve::constant(1)});
   return s;
 }
-SourceSpecs lamp() {
+SourceSpecs lamps(size_t count) {
   SourceSpecs s;
-  s.add(std::vector<LampSpec>{point_lamp({{0.1, -1, 1}}, 1)});
+  std::vector<LampSpec> all;
+  for (size_t i = 0; i < count; ++i) all.push_back(point_lamp({{0.1 + 0.01 * static_cast<double>(i), -1, 1}}, 1));
+  s.add(all);
   return s;
 }
+SourceSpecs lamp() { return lamps(1); }
 SourceSpecs in_air(AirScattering scattering, bool adjacency = true) {
   SourceSpecs s = sun();
   AirSpec air;
@@ -115,6 +118,8 @@ std::vector<Case> cases() {
           {"haze under a sky", corner(matte, Fill::haze), sky()},
           {"haze under a lamp", corner(matte, Fill::haze), lamp()},
           {"haze under a lamp without equiangular sampling", corner(matte, Fill::haze), lamp(), kNoEquiangular},
+          {"haze under 16 lamps", corner(matte, Fill::haze), lamps(16)},
+          {"haze under 17 lamps", corner(matte, Fill::haze), lamps(17)},
           {"haze and gloss in the sun", corner(gloss(), Fill::haze), sun()},
           {"water in the sun", corner(glass(), Fill::under_floor), sun()},
           {"water without MNEE", corner(glass(), Fill::under_floor), sun(), kNoManifold},
