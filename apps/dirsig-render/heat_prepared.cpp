@@ -74,11 +74,11 @@ HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
   const Weather& weather = *sim.heat->weather;
   const Clock clock(*sim.epoch);
   const GeodeticOrigin& o = scene.origin;
-  const auto frame = std::make_shared<const SceneFrame>(
-      o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site());
+  const auto series = std::make_shared<const SunSeries>(
+      SceneFrame(o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site()), Vec3{});
   return {weather, [&weather, clock](double t) { return weather.clock().seconds(clock.at(t)); },
-          [frame, clock, dut1 = sim.dut1](double t) {
-            return sun_at(*frame, {}, clock.at(t), dut1_at(clock.at(t), clock.at(0), dut1));
+          [series, clock, dut1 = sim.dut1](double t) {
+            return series->at(clock.at(t), dut1_at(clock.at(t), clock.at(0), dut1));
           }};
 }
 

@@ -3,6 +3,10 @@
 #include <erfa.h>
 #include <erfam.h>
 
+#include <cmath>
+#include <mutex>
+#include <unordered_map>
+
 #include "base/error.h"
 
 namespace suite {
@@ -50,16 +54,29 @@ void check_air(const Refraction& air, double dut1) {
   if (!(std::fabs(dut1) <= 3.9)) throw Error(strf("dut1 = %g s is outside its range", dut1), "give -0.9 to 0.9 s");
 }
 
-SkyBody seen(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const Refraction& air, Geometric body,
-             double radius) {
-  check_air(air, dut1);
-  const JulianDate tt = julian_tt(instant), ut1 = julian_ut1(instant, dut1);
-  double to_earth_fixed[3][3];
-  eraC2t06a(tt.day, tt.fraction, ut1.day, ut1.fraction, 0, 0, to_earth_fixed);
+// What changes slowly in the sky: the pole and the locator of the origin of right ascension, rad, and the place of a
+// body as seen from the Earth's centre, GCRS axes, m.
+struct SlowSky {
+  double x = 0, y = 0, locator = 0;
+  Vec3 body;
+};
+SlowSky exact_sky(JulianDate tt, Geometric body) {
+  SlowSky sky;
+  eraXys06a(tt.day, tt.fraction, &sky.x, &sky.y, &sky.locator);
+  sky.body = apparent_geocentric(body, tt);
+  return sky;
+}
+
+SkyBody seen(const SceneFrame& frame, Vec3 site, JulianDate tt, JulianDate ut1, const Refraction& air,
+             const SlowSky& sky, double radius) {
+  double to_intermediate[3][3], pole[3][3], to_earth_fixed[3][3];
+  eraC2ixys(sky.x, sky.y, sky.locator, to_intermediate);
+  eraPom00(0, 0, eraSp00(tt.day, tt.fraction), pole);
+  eraC2tcio(to_intermediate, eraEra00(ut1.day, ut1.fraction), pole, to_earth_fixed);
 
   // Topocentric vector in Earth-fixed axes, with the aberration of the observer's daily motion.
   const Vec3 observer = frame.ecef_from_enu(site);
-  Vec3 p = turn(to_earth_fixed, apparent_geocentric(body, tt)) - observer;
+  Vec3 p = turn(to_earth_fixed, sky.body) - observer;
   const double distance = length(p);
   constexpr double kEarthRate = 7.292115e-5;  // rad/s
   p += Vec3{-observer.y, observer.x, 0} * (kEarthRate * distance / ERFA_CMPS);
@@ -91,11 +108,51 @@ double refraction_lift(double elevation, const Refraction& air) {
 }
 
 SkyBody sun_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const Refraction& air) {
-  return seen(frame, site, instant, dut1, air, sun_geometric, kSunRadius);
+  check_air(air, dut1);
+  const JulianDate tt = julian_tt(instant);
+  return seen(frame, site, tt, julian_ut1(instant, dut1), air, exact_sky(tt, sun_geometric), kSunRadius);
 }
 
 SkyBody moon_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const Refraction& air) {
-  return seen(frame, site, instant, dut1, air, moon_geometric, kMoonRadius);
+  check_air(air, dut1);
+  const JulianDate tt = julian_tt(instant);
+  return seen(frame, site, tt, julian_ut1(instant, dut1), air, exact_sky(tt, moon_geometric), kMoonRadius);
+}
+
+// Exact skies of the sun, by their number since J2000.
+struct SunSeries::Knots {
+  static constexpr double kADay = 8;        // knots
+  static constexpr size_t kMost = 1 << 20;  // 48 MB, 350 years; then anew
+  std::mutex guard;
+  std::unordered_map<int64_t, SlowSky> known;
+
+  SlowSky at(int64_t n) {
+    const std::lock_guard lock(guard);
+    if (known.size() >= kMost) known.clear();
+    const auto [found, is_new] = known.try_emplace(n);
+    if (is_new) found->second = exact_sky({ERFA_DJ00, static_cast<double>(n) / kADay}, sun_geometric);
+    return found->second;
+  }
+};
+
+SunSeries::SunSeries(const SceneFrame& frame, Vec3 site) : frame_(frame), site_(site), knots_(new Knots) {}
+SunSeries::~SunSeries() = default;
+
+SkyBody SunSeries::at(Instant instant, double dut1, const Refraction& air) const {
+  check_air(air, dut1);
+  const JulianDate tt = julian_tt(instant);
+  const double place = Knots::kADay * ((tt.day - ERFA_DJ00) + tt.fraction), first = std::floor(place),
+               u = place - first;
+  // Lagrange's weights of the knots -1, 0, 1 and 2.
+  const double weights[] = {-u * (u - 1) * (u - 2) / 6, (u + 1) * (u - 1) * (u - 2) / 2, -(u + 1) * u * (u - 2) / 2,
+                            (u + 1) * u * (u - 1) / 6};
+  SlowSky sky;
+  for (int k = 0; k < 4; ++k) {
+    const SlowSky knot = knots_->at(static_cast<int64_t>(first) + k - 1);
+    sky.x += weights[k] * knot.x, sky.y += weights[k] * knot.y, sky.locator += weights[k] * knot.locator;
+    sky.body += knot.body * weights[k];
+  }
+  return seen(frame_, site_, tt, julian_ut1(instant, dut1), air, sky, kSunRadius);
 }
 
 double moon_phase_angle(Instant instant) {

@@ -38,8 +38,8 @@ TEST(FuzzDetection, Text) {
              {"kind: geiger", "impulse", "1e300", "-1", "[]", "{}", "null", "all", "fold"});
 }
 
-// Every number in turn as something extreme: refused with a place, or a pulse is detected within two seconds; sanitizers
-// take ten times as long.
+// Every number in turn as something extreme: refused with a place, or a pulse is detected within two seconds;
+// sanitizers take ten times as long.
 #ifdef __SANITIZE_ADDRESS__
 constexpr double kMostSeconds = 20;
 #else

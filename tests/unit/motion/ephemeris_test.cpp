@@ -129,5 +129,27 @@ TEST(Ephemeris, RefusesImpossibleAir) {
   EXPECT_NO_THROW(moon_at(frame, {}, when, 1.5));
 }
 
+// Interpolated between knots of three hours: instants of all phases of a knot, of 150 years, in any order.
+TEST(Ephemeris, TheSeriesOfTheSunIsTheExactOne) {
+  const SceneFrame frame({49.4, 8.7, 100});
+  const Vec3 site{100, -50, 20};
+  const SunSeries series(frame, site);
+  double worst = 0, distance = 0, moved = 0;
+  for (int i = 0; i < 200; ++i) {
+    const int year = 1975 + (37 * i) % 150;
+    const Instant when = instant_from_utc(parse_iso8601(
+        strf("%d-%02d-%02dT%02d:%02d:%02dZ", year, 1 + i % 12, 1 + (7 * i) % 28, (5 * i) % 24, (13 * i) % 60, i % 60)));
+    const SkyBody exact = sun_at(frame, site, when, 0.1, {101325, 280}), found = series.at(when, 0.1, {101325, 280});
+    worst = std::max(worst, length(found.direction - exact.direction));
+    distance = std::max(distance, std::fabs(found.distance / exact.distance - 1));
+    moved = std::max(moved, length(sun_at(frame, site, when, 0.1001, {101325, 280}).direction - exact.direction));
+  }
+  std::printf("series of the sun: %.2g rad, %.2g of its distance\n", worst, distance);
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_LT(distance, 1e-9);
+  EXPECT_GT(moved, 5e-9);  // control: 0.1 ms of the Earth's rotation is seen
+  EXPECT_THROW(series.at(instant_from_utc(parse_iso8601("2020-01-01T00:00:00Z")), 10), Error);
+}
+
 }  // namespace
 }  // namespace suite
