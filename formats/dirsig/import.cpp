@@ -112,7 +112,10 @@ std::string Import::path_of(const Item& at, std::string_view name, const Folders
 }
 
 std::string Import::file_of(const Item& named, const Folders& folders) {
-  if (named.value.empty()) throw named.error("'" + named.name + "' names no file");
+  if (named.value.empty())
+    throw named.error("'" + named.name + "' names no file",
+                      named.children.empty() ? "give it one"
+                                             : "the name is its own text, not that of '" + named.children[0].name + "' in it");
   std::string how;
   const std::string path = path_of(named, named.value, folders, how);
   named.mark(how.empty() ? Fate::exact : Fate::converted, how);

@@ -10,6 +10,21 @@ namespace {
 constexpr size_t kShown = 120;
 constexpr const char* kPart = "part of what is lost";
 
+constexpr size_t kNamed = 10;  // names that are read in an element, which a message lists
+
+// What an element that nobody read should have been: a name that is near, else those that are read in its parent.
+std::string unknown_note(const Item& item, const Item* parent) {
+  if (!parent) return "not known here";
+  const std::vector<std::string> asked(parent->asked().begin(), parent->asked().end());
+  const std::string near = nearest_name(item.name, asked);
+  if (near == item.name) return "given more than once; the first holds";
+  if (!near.empty()) return "not known here; is '" + near + "' meant?";
+  std::string names;
+  for (size_t i = 0; i < std::min(asked.size(), kNamed); ++i) names += (i ? ", " : "") + asked[i];
+  if (names.empty()) return "not known here";
+  return "not known here; '" + parent->name + "' has " + names + (asked.size() > kNamed ? ", ..." : "");
+}
+
 template <class Visit>
 void walk(const Item& item, const std::string& path, const Item* parent, const Visit& visit) {
   visit(item, path, parent);
@@ -40,13 +55,7 @@ void Ledger::close() {
       if (item.seen()) return item.mark(Fate::unsupported, "its value was not used");
       if (item.value.empty() && item.children.empty() && (item.name == "clocktable" || item.name == "rotationdeviates"))
         return item.mark(Fate::ignored, "DIRSIG's own editors write it, empty");
-      std::string near;
-      if (parent) {
-        const std::vector<std::string> asked(parent->asked().begin(), parent->asked().end());
-        near = nearest_name(item.name, asked);
-        if (near == item.name) return item.mark(Fate::unsupported, "given more than once; the first holds");
-      }
-      item.mark(Fate::unsupported, near.empty() ? "not known here" : "not known here; is '" + near + "' meant?");
+      item.mark(Fate::unsupported, unknown_note(item, parent));
     });
 }
 

@@ -214,7 +214,7 @@ sensors:
         page = self.folder / "x.html"
         done = view("-o", self.folder, "--view", page, "--view-size", "180KiB")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("every 2-th column and row", done.stderr)
+        self.assertIn("one in 2 columns and rows", done.stderr)
         with Browser() as browser:
             browser.open(page)
             self.assertIn("Only every 2-th", browser.run("document.getElementById('losses').innerText"))

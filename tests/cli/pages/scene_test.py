@@ -133,7 +133,7 @@ world: [{place: hill}, %s]
         done = prep("scene.yaml", "-o", "scene.h5", "--no-crossing-check", "--view", page, cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(f"of {2 * (n - 1) ** 2 + 2 * 8 * 4} triangles", done.stderr)
-        self.assertIn("every 3-th of 120001 instances", done.stderr)
+        self.assertIn("one in 3 of the 120001 instances", done.stderr)
         self.assertLess(page.stat().st_size, 20e6)
         with Browser() as browser:
             browser.open(page)
@@ -142,7 +142,7 @@ world: [{place: hill}, %s]
             lacks = browser.run("document.getElementById('lacks').innerText")
             moved = float(re.search(r"moved by up to (\S+) m", lacks)[1])
             self.assertLess(moved, 3)  # cells of some two metres
-            self.assertIn("every 3-th of 120001", lacks)
+            self.assertIn("one in 3 of the 120001", lacks)
             # A parabola is still one: heights within the slope times what moved.
             browser.run("view.elevation = 89.9, draw()")
             hit = self.click_on(browser, [500.5, 200.5, 20 * (500.5 / n) ** 2])
