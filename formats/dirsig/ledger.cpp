@@ -10,19 +10,33 @@ namespace {
 constexpr size_t kShown = 120;
 constexpr const char* kPart = "part of what is lost";
 
-constexpr size_t kNamed = 10;  // names that are read in an element, which a message lists
+constexpr size_t kNamed = 16;  // names that are read in an element, which a message lists
+
+// The one name that has all of another in it, or the other way round, as "sceneorigin" of "origin".
+std::string containing(const std::string& name, const std::vector<std::string>& names) {
+  std::string found;
+  for (const std::string& n : names) {
+    if (std::min(n.size(), name.size()) < 4 || (n.find(name) == n.npos && name.find(n) == name.npos)) continue;
+    if (!found.empty()) return {};
+    found = n;
+  }
+  return found;
+}
 
 // What an element that nobody read should have been: a name that is near, else those that are read in its parent.
 std::string unknown_note(const Item& item, const Item* parent) {
   if (!parent) return "not known here";
   const std::vector<std::string> asked(parent->asked().begin(), parent->asked().end());
-  const std::string near = nearest_name(item.name, asked);
+  std::string near = nearest_name(item.name, asked);
   if (near == item.name) return "given more than once; the first holds";
+  if (near.empty()) near = containing(item.name, asked);
   if (!near.empty()) return "not known here; is '" + near + "' meant?";
   std::string names;
-  for (size_t i = 0; i < std::min(asked.size(), kNamed); ++i) names += (i ? ", " : "") + asked[i];
+  size_t listed = 0;
+  for (const std::string& name : asked)
+    if (!name.starts_with('@') && ++listed <= kNamed) names += (names.empty() ? "" : ", ") + name;
   if (names.empty()) return "not known here";
-  return "not known here; '" + parent->name + "' has " + names + (asked.size() > kNamed ? ", ..." : "");
+  return "not known here; '" + parent->name + "' has " + names + (listed > kNamed ? ", ..." : "");
 }
 
 template <class Visit>

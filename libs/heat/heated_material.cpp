@@ -46,7 +46,8 @@ std::shared_ptr<const ConvectionLaw> convection_of(const TemperatureSpec& spec, 
 // What the numbers of a back are, for those who left one out.
 const char* meaning_of(std::string_view name) {
   if (name == "back_flux_w_m2") return "the heat from behind, W/m2";
-  return name == "back_k" ? "the temperature behind, K" : "the film coefficient there, W/(m2 K); in rooms 7.7 by ISO 6946";
+  return name == "back_k" ? "the temperature behind, K"
+                          : "the film coefficient there, W/(m2 K); in rooms 7.7 by ISO 6946";
 }
 
 // All numbers that a back needs and has not, in one message.

@@ -144,16 +144,17 @@ std::string svg_of(const Plot& plot) {
 }
 
 std::string html_of(const Page& page) {
-  std::string h = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-                  "content=\"width=device-width, initial-scale=1\"><title>" +
-                  in_markup(page.title) +
-                  "</title><link rel=\"icon\" href=\"data:,\"><style>body{font:14px "
-                  "sans-serif;margin:2em;max-width:1400px}table{border-collapse:collapse;margin-bottom:1em}"
-                  "td,th{padding:3px 9px;text-align:right;border-bottom:1px solid "
-                  "#ddd}td:first-child,th:first-child{text-align:left}"
-                  "svg{margin:4px;max-width:100%;height:auto}table{display:block;overflow-x:auto}"
-                  "@media(max-width:600px){body{margin:8px}}</style></head><body>\n<h1>" +
-                  in_markup(page.title) + "</h1>\n";
+  std::string h =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><title>" +
+      in_markup(page.title) +
+      "</title><link rel=\"icon\" href=\"data:,\"><style>body{font:14px "
+      "sans-serif;margin:2em;max-width:1400px}table{border-collapse:collapse;margin-bottom:1em}"
+      "td,th{padding:3px 9px;text-align:right;border-bottom:1px solid "
+      "#ddd}td:first-child,th:first-child{text-align:left}"
+      "svg{margin:4px;max-width:100%;height:auto}table{display:block;overflow-x:auto}"
+      "@media(max-width:600px){body{margin:8px}}</style></head><body>\n<h1>" +
+      in_markup(page.title) + "</h1>\n";
   for (const std::string& p : page.paragraphs) h += "<p>" + in_markup(p) + "</p>\n";
   for (const Plot& p : page.plots) h += svg_of(p);
   for (const PageTable& t : page.tables) {
