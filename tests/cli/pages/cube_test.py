@@ -217,7 +217,7 @@ sensors:
         self.assertIn("one in 2 columns and rows", done.stderr)
         with Browser() as browser:
             browser.open(page)
-            self.assertIn("Only every 2-th", browser.run("document.getElementById('losses').innerText"))
+            self.assertIn("Only one in 2 columns and rows", browser.run("document.getElementById('losses').innerText"))
             self.click_pixel(browser, 10, 20, 50, 50)
             np.testing.assert_allclose(self.picked(browser)[0], values[:, 40, 20], rtol=2 ** -11)
             self.assertEqual(browser.faults, [])
