@@ -73,7 +73,7 @@ bool report_import(const dirsig::Ledger& ledger, bool strict) {
   size_t printed = 0;
   for (const dirsig::Entry& e : ledger.entries()) {
     if (e.fate != Fate::unsupported && !(strict && e.fate == Fate::ignored)) continue;
-    if (++printed > kMostPrinted || e.part) continue;
+    if (e.part || ++printed > kMostPrinted) continue;
     emit({Dr::import_unsupported, to_text(e.where) + ": " + to_text(e.fate) + ": " + e.path +
                                       (e.value.empty() ? "" : " = " + e.value) +
                                       (e.note.empty() ? "" : ": " + e.note)});

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/run_app.h"
+#include "formats/las_write/las_write.h"
 
 namespace suite {
 
@@ -40,7 +41,7 @@ void write_glt(const std::string& path, const LocatedImage& image, const GroundM
   h.samples = grid.columns, h.lines = grid.rows, h.bands = 2;
   h.type = EnviType::int32;
   h.interleave = Interleave::bsq;
-  h.coordinate_system.clear();
+  h.coordinate_system = wkt_of_epsg(m.epsg);  // GDAL knows UTM on WGS84 alone by ENVI's words
   h.band_names = {"GLT Sample Lookup", "GLT Line Lookup"};
   h.ignore_value = 0;
   h.map_info = {m.name};

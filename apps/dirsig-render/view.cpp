@@ -349,7 +349,7 @@ void write_view(const std::string& folder, const std::string& path, size_t room)
   for (const std::string& name : images_of(folder)) images.push_back(open_viewed(folder, name));
   const size_t step = step_for(images, bytes);
   if (step > 1)
-    emit({Dr::page_thinned, strf("%s keeps every %zu-th column and row of the images alone, to stay within %s",
+    emit({Dr::page_thinned, strf("%s keeps one in %zu columns and rows of the images alone, to stay within %s",
                                  path.c_str(), step, human_bytes(bytes).c_str())});
   make_folders_of({path});
   const std::string name = std::filesystem::path(in_folder(folder, "x")).parent_path().filename();

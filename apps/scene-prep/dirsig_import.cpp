@@ -1,5 +1,7 @@
 #include "dirsig_import.h"
 
+#include <algorithm>
+
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/kept_texts.h"
@@ -16,7 +18,10 @@ using dirsig::Fate;
 
 // What an import leaves out or changes, among the findings of the scene.
 void file_account(const std::string& path, const dirsig::Ledger& ledger, bool strict, Report& report) {
-  for (const dirsig::Entry& e : ledger.entries()) {
+  std::vector<dirsig::Entry> entries = ledger.entries();
+  // Texts show the first of a kind: what says something of its own goes before the parts of what is lost.
+  std::stable_partition(entries.begin(), entries.end(), [](const dirsig::Entry& e) { return !e.part; });
+  for (const dirsig::Entry& e : entries) {
     if (e.fate == Fate::exact || e.fate == Fate::converted) continue;
     const std::string text = e.path + (e.value.empty() ? "" : " = " + e.value) + (e.note.empty() ? "" : ": " + e.note);
     const bool left_out = e.fate != Fate::approximated;

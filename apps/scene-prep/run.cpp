@@ -248,8 +248,8 @@ int inspect(const ScenePrepOptions& o) {
       o.strict || o.repair || o.quick || o.force || o.uplift)
     throw UsageError(
         "--output, --set, --report, --mute, --strict, --repair, --compress, --uplift, --no-crossing-check and --force "
-        "go "
-        "with a scene text, not with questions about a prepared scene");
+        "prepare a scene text; --quick-look, --summary, --raycast and --export-obj ask a prepared one: two commands, "
+        "scene-prep SCENE.yaml -o SCENE.h5, then scene-prep SCENE.h5 --quick-look LOOK.png");
   if (o.quick_look.empty() && (!o.look_at.empty() || !o.look_from.empty() || o.look_size != 0))
     throw UsageError("--look-at, --look-from and --look-size go with --quick-look");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");

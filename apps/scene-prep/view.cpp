@@ -148,9 +148,9 @@ struct Lacks {
       all.push_back(strf(
           "%zu of %zu triangles (without repetitions) are shown; corners moved by up to %.3g m of their "
           "meshes%s",
-          after, before, moved, thinned ? strf("; of %zu meshes every n-th triangle, enlarged", thinned).c_str() : ""));
+          after, before, moved, thinned ? strf("; of %zu meshes one in n triangles, enlarged", thinned).c_str() : ""));
     if (in.step > 1)
-      all.push_back(strf("every %llu-th of %llu instances is shown", static_cast<unsigned long long>(in.step),
+      all.push_back(strf("one in %llu of the %llu instances is shown", static_cast<unsigned long long>(in.step),
                          static_cast<unsigned long long>(in.all)));
     else if (in.kept < in.all)
       all.push_back(

@@ -94,7 +94,7 @@ void write_lobe_view(const sqt::Bundle& bundle, const std::string& path) {
   page.begin();
   page.commit();
   if (step > 1)
-    note(strf("%s has every %zu-th of %zu view directions, to stay within %s", path.c_str(), step, info.views.size(),
+    note(strf("%s has one in %zu of the %zu view directions, to stay within %s", path.c_str(), step, info.views.size(),
               human_bytes(kMostBytes).c_str()));
   note(strf("%s: %s", path.c_str(), human_bytes(static_cast<double>(file_size(path))).c_str()));
 }

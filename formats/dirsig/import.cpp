@@ -1,5 +1,6 @@
 #include "formats/dirsig/import.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -112,7 +113,14 @@ std::string Import::path_of(const Item& at, std::string_view name, const Folders
 }
 
 std::string Import::file_of(const Item& named, const Folders& folders) {
-  if (named.value.empty()) throw named.error("'" + named.name + "' names no file");
+  if (named.value.empty()) {
+    const auto inner = std::find_if(named.children.begin(), named.children.end(),
+                                    [](const Item& child) { return !child.name.starts_with('@'); });
+    throw named.error("'" + named.name + "' names no file",
+                      inner == named.children.end()
+                          ? "give it one"
+                          : "the name is its own text, not that of '" + inner->name + "' in it");
+  }
   std::string how;
   const std::string path = path_of(named, named.value, folders, how);
   named.mark(how.empty() ? Fate::exact : Fate::converted, how);

@@ -10,6 +10,35 @@ namespace {
 constexpr size_t kShown = 120;
 constexpr const char* kPart = "part of what is lost";
 
+constexpr size_t kNamed = 16;  // names that are read in an element, which a message lists
+
+// The one name that has all of another in it, or the other way round, as "sceneorigin" of "origin".
+std::string containing(const std::string& name, const std::vector<std::string>& names) {
+  std::string found;
+  for (const std::string& n : names) {
+    if (std::min(n.size(), name.size()) < 4 || (n.find(name) == n.npos && name.find(n) == name.npos)) continue;
+    if (!found.empty()) return {};
+    found = n;
+  }
+  return found;
+}
+
+// What an element that nobody read should have been: a name that is near, else those that are read in its parent.
+std::string unknown_note(const Item& item, const Item* parent) {
+  if (!parent) return "not known here";
+  const std::vector<std::string> asked(parent->asked().begin(), parent->asked().end());
+  std::string near = nearest_name(item.name, asked);
+  if (near == item.name) return "given more than once; the first holds";
+  if (near.empty()) near = containing(item.name, asked);
+  if (!near.empty()) return "not known here; is '" + near + "' meant?";
+  std::string names;
+  size_t listed = 0;
+  for (const std::string& name : asked)
+    if (!name.starts_with('@') && ++listed <= kNamed) names += (names.empty() ? "" : ", ") + name;
+  if (names.empty()) return "not known here";
+  return "not known here; '" + parent->name + "' has " + names + (listed > kNamed ? ", ..." : "");
+}
+
 template <class Visit>
 void walk(const Item& item, const std::string& path, const Item* parent, const Visit& visit) {
   visit(item, path, parent);
@@ -40,13 +69,7 @@ void Ledger::close() {
       if (item.seen()) return item.mark(Fate::unsupported, "its value was not used");
       if (item.value.empty() && item.children.empty() && (item.name == "clocktable" || item.name == "rotationdeviates"))
         return item.mark(Fate::ignored, "DIRSIG's own editors write it, empty");
-      std::string near;
-      if (parent) {
-        const std::vector<std::string> asked(parent->asked().begin(), parent->asked().end());
-        near = nearest_name(item.name, asked);
-        if (near == item.name) return item.mark(Fate::unsupported, "given more than once; the first holds");
-      }
-      item.mark(Fate::unsupported, near.empty() ? "not known here" : "not known here; is '" + near + "' meant?");
+      item.mark(Fate::unsupported, unknown_note(item, parent));
     });
 }
 

@@ -34,10 +34,12 @@ void Cli::option(const std::string& names, std::string& value, const std::string
   impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
 }
 void Cli::option(const std::string& names, double& value, const std::string& help, const std::string& metavar) {
-  impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
+  CLI::Option* option = impl_->app.add_option(names, value, help)->type_name(metavar);
+  if (value >= 0) option->capture_default_str();  // below 0: not given, which is no value to show
 }
 void Cli::option(const std::string& names, long long& value, const std::string& help, const std::string& metavar) {
-  impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
+  CLI::Option* option = impl_->app.add_option(names, value, help)->type_name(metavar);
+  if (value >= 0) option->capture_default_str();  // below 0: not given, which is no value to show
 }
 void Cli::option(const std::string& names, std::vector<std::string>& values, const std::string& help,
                  const std::string& metavar) {

@@ -43,11 +43,23 @@ std::shared_ptr<const ConvectionLaw> convection_of(const TemperatureSpec& spec, 
   return make_convection(asked, where);
 }
 
-double number(const TemperatureSpec& spec, const char* name, const char* needed_by, const Where& where) {
-  const auto at = spec.numbers.find(name);
-  if (at == spec.numbers.end())
-    throw Error(where, std::string("'back: ") + needed_by + "' needs '" + name + "'", "give it");
-  return at->second;
+// What the numbers of a back are, for those who left one out.
+const char* meaning_of(std::string_view name) {
+  if (name == "back_flux_w_m2") return "the heat from behind, W/m2";
+  return name == "back_k" ? "the temperature behind, K"
+                          : "the film coefficient there, W/(m2 K); in rooms 7.7 by ISO 6946";
+}
+
+// All numbers that a back needs and has not, in one message.
+void need_numbers(const TemperatureSpec& spec, const std::string& back, const std::vector<std::string>& names,
+                  const Where& where) {
+  std::string missing, hint;
+  for (const std::string& name : names)
+    if (!spec.numbers.count(name)) {
+      missing += (missing.empty() ? "'" : " and '") + name + "'";
+      hint += (hint.empty() ? "" : "; ") + name + ": " + meaning_of(name);
+    }
+  if (!missing.empty()) throw Error(where, "'back: " + back + "' needs " + missing, hint);
 }
 
 // What is behind, from `back` and the numbers that go with it.
@@ -70,11 +82,12 @@ void set_back(const TemperatureSpec& spec, HeatedMaterial& m, const Where& where
     if (spec.numbers.count(name) && std::find(at->second.begin(), at->second.end(), name) == at->second.end())
       throw Error(where, std::string("'") + name + "' says nothing of a back that is '" + back + "'",
                   "leave it out, or 'back: air' (both), 'ground' (back_k), 'flux' (back_flux_w_m2)");
+  need_numbers(spec, back, at->second, where);
+  const auto number = [&](const char* name) { return spec.numbers.at(name); };
   if (back == "open") m.back_open = true;
-  if (back == "flux") m.behind = {Kind::flux, number(spec, "back_flux_w_m2", "flux", where), 0};
-  if (back == "ground") m.behind = {Kind::held, number(spec, "back_k", "ground", where), 0};
-  if (back == "air")
-    m.behind = {Kind::air, number(spec, "back_k", "air", where), number(spec, "back_film_w_m2_k", "air", where)};
+  if (back == "flux") m.behind = {Kind::flux, number("back_flux_w_m2"), 0};
+  if (back == "ground") m.behind = {Kind::held, number("back_k"), 0};
+  if (back == "air") m.behind = {Kind::air, number("back_k"), number("back_film_w_m2_k")};
   if (m.layers.empty() && !m.back_open && back != "adiabatic")
     throw Error(where, "a surface without heat capacity has '" + back + "' behind it",
                 "give it layers (thermal: ...), or 'back: open' as of leaves");

@@ -13,6 +13,7 @@ namespace suite {
 namespace {
 
 constexpr double kWidth = 640, kHeight = 400, kLeft = 78, kRight = 170, kTop = 36, kBottom = 52;
+constexpr double kBoldEm = 0.65;  // mean width of a character of bold sans-serif over its size
 const char* kColours[] = {"#1b6ca8", "#c0392b", "#1e8449", "#8e44ad", "#b9770e", "#16808a", "#7f3f1f", "#555555"};
 
 // One axis: the range of its values and where they stand on the page.
@@ -86,8 +87,9 @@ std::string frame_of(const Plot& plot, const Axis& x, const Axis& y) {
         "text-anchor=\"end\">%s</text>",
         kLeft, y.place(t), kWidth - kRight, y.place(t), kLeft - 6, y.place(t) + 4, tick_text(up, i).c_str());
   }
-  s +=
-      strf("<text x=\"%g\" y=\"20\" font-size=\"15\" font-weight=\"bold\">", kLeft) + in_markup(plot.title) + "</text>";
+  s += strf("<text x=\"%g\" y=\"20\" font-size=\"%.3g\" font-weight=\"bold\">", kLeft,
+            std::min(15.0, (kWidth - kLeft) / (kBoldEm * std::max<double>(1, plot.title.size())))) +
+       in_markup(plot.title) + "</text>";
   s += strf("<text x=\"%g\" y=\"%g\" text-anchor=\"middle\">", (kLeft + kWidth - kRight) / 2, kHeight - 14) +
        in_markup(plot.x_label) + "</text>";
   s +=
@@ -142,13 +144,17 @@ std::string svg_of(const Plot& plot) {
 }
 
 std::string html_of(const Page& page) {
-  std::string h = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + in_markup(page.title) +
-                  "</title><link rel=\"icon\" href=\"data:,\"><style>body{font:14px "
-                  "sans-serif;margin:2em;max-width:1400px}table{border-collapse:collapse;margin-bottom:1em}"
-                  "td,th{padding:3px 9px;text-align:right;border-bottom:1px solid "
-                  "#ddd}td:first-child,th:first-child{text-align:left}"
-                  "svg{margin:4px}</style></head><body>\n<h1>" +
-                  in_markup(page.title) + "</h1>\n";
+  std::string h =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><title>" +
+      in_markup(page.title) +
+      "</title><link rel=\"icon\" href=\"data:,\"><style>body{font:14px "
+      "sans-serif;margin:2em;max-width:1400px}table{border-collapse:collapse;margin-bottom:1em}"
+      "td,th{padding:3px 9px;text-align:right;border-bottom:1px solid "
+      "#ddd}td:first-child,th:first-child{text-align:left}"
+      "svg{margin:4px;max-width:100%;height:auto}table{display:block;overflow-x:auto}"
+      "@media(max-width:600px){body{margin:8px}}</style></head><body>\n<h1>" +
+      in_markup(page.title) + "</h1>\n";
   for (const std::string& p : page.paragraphs) h += "<p>" + in_markup(p) + "</p>\n";
   for (const Plot& p : page.plots) h += svg_of(p);
   for (const PageTable& t : page.tables) {

@@ -31,9 +31,19 @@ def included(site):
         for page in ("TUTORIAL.md", "expect.md"):
             if os.path.exists(os.path.join(root, "sample_scenes", name, page)):
                 text += f"\n```{{include}} ../../../sample_scenes/{name}/{page}\n:heading-offset: 1\n```\n"
+        text += texts_of(os.path.join(root, "sample_scenes", name))
         site.add(f"guide/samples/{name}.md", text)
     for name in folders(root, "libs", "README.md"):
         site.add(f"develop/libraries/{name}.md", f"```{{include}} ../../../libs/{name}/README.md\n```\n")
+
+
+def texts_of(folder):
+    """The texts of a sample in full, for those who have the site alone."""
+    text = ""
+    for name in sorted(n for n in os.listdir(folder) if n.endswith(".yaml")):
+        with open(os.path.join(folder, name), encoding="utf-8") as f:
+            text += f"\n### {name}\n\n```yaml\n{f.read().rstrip()}\n```\n"
+    return f"\n## Texts\n{text}" if text else ""
 
 
 def folders(root, parent, page):

@@ -21,7 +21,7 @@ function buildStage() {
     event.preventDefault();
     zoomTo(state.zoom * (event.deltaY < 0 ? 1.25 : 0.8));
   }}, ui.canvas, ui.over, ui.marks, ui.regionBox = make('div', {className: 'region', hidden: true}));
-  ui.readout = make('div', {className: 'said', id: 'readout'}, kHelp);
+  ui.readout = make('div', {className: 'said', id: 'readout'}, 'Point at a pixel for its values.');
   ui.map = make('div', {className: 'map', id: 'map'});
   ui.bar = make('canvas', {width: 420, height: 14, id: 'bar'});
   ui.barText = make('div', {className: 'row', id: 'legend'});
@@ -318,14 +318,14 @@ function begin() {
 }
 
 function ready() {
-  if (ui.waiting) draw();
+  if (ui.waiting || framesOf(state.image).length > 1) draw();  // the stretch of all frames, which are here only now
   if (state.over) drawOverlay();
   showMap();
   const lost = JSON.parse(document.getElementById('lost').textContent);
   const tell = () => {
     const one = image(), l = lost[state.image];
-    ui.losses.textContent = `${one.fullColumns} x ${one.fullRows} pixels, ${one.bands.length} bands${one.time ? ', ' + one.time : ''}. ` +
-      (one.step > 1 ? `Only every ${one.step}-th column and row is here. ` : '') +
+    ui.losses.textContent = `${one.fullColumns} x ${one.fullRows} pixels, ${one.bands.length} ${one.bands.length === 1 ? 'band' : 'bands'}${one.time ? ', ' + one.time : ''}. ` +
+      (one.step > 1 ? `Only one in ${one.step} columns and rows is here. ` : '') +
       `Numbers here differ from the files' by at most ${shown(100 * l.values, 2)} % (values of a millionth of a band's largest or less: ` +
       `by more), standard errors by ${shown(100 * l.errors, 2)} %; truth has seven digits.\n${one.about}`;
   };

@@ -78,7 +78,7 @@ function tableOf(picks, image, number, band) {
   row('flags', k => !bits ? '' : about.flags.filter(f => bits[k.index] & f.bit).map(f => f.name).join(', ') || 'none');
   image.truth.slice(0, 40).forEach((t, i) => row(`${t.name}${t.unit ? ', ' + t.unit : ''}`, k => {
     const v = numberAt(`i${number}.t${i}`, k.index);
-    return t.classes && t.classes[v] ? t.classes[v].name : shown(v, 7);
+    return t.classes && t.classes[v] ? t.classes[v].name : shown(t.unit === 'm' && Math.abs(v) < 1e-9 ? 0 : v, 7);
   }));
   if (image.truth.length > 40) row(`and ${image.truth.length - 40} more of the truth`, () => '');
   return table;

@@ -151,12 +151,12 @@ function cellOf(c, d) {
   return -1;
 }
 
-// Values in the plane of the view, all channels over each other: zenith angles on the side of the view negative.
+// Values in the plane of the view, all channels over each other: zenith angles towards the mirror direction are negative, as in the plot and the table of sqt-inspect.
 function profileOf(channel) {
   const id = `${about.views[state.view].number}.${channel}`, v = about.views[state.view], out = [];
   const c = {corners: new Int16Array(bytesOf(block('c' + id).text).buffer), values: numbersOf('v' + id), orders: numbersOf('o' + id)};
   for (let angle = -89; angle <= 89; angle += 2) {
-    const t = radians(angle), p = radians(v.phi + 180);
+    const t = radians(angle), p = radians(v.phi);
     const i = cellOf(c, [Math.sin(t) * Math.cos(p), Math.sin(t) * Math.sin(p), Math.cos(t)]);
     if (i >= 0 && c.values[5 * i + 4] > 0) out.push([angle, c.values[5 * i + 4]]);
   }
@@ -195,7 +195,7 @@ function drawProfile() {
   const decades = logTicks(low, high), labelled = decades.length > 1 ? decades : tickLabels(low, high, 3);
   for (const t of labelled) plot.append(tag('line', {x1: p.left, x2: p.width - p.right, y1: y(t.at), y2: y(t.at), stroke: '#ddd'}),
     tag('text', {x: p.left - 5, y: y(t.at) + 4, 'text-anchor': 'end'}, t.text));
-  plot.append(tag('text', {x: (p.left + p.width - p.right) / 2, y: p.height - 8, 'text-anchor': 'middle'}, 'zenith angle in the plane of the view, degrees (its side: < 0)'),
+  plot.append(tag('text', {x: (p.left + p.width - p.right) / 2, y: p.height - 8, 'text-anchor': 'middle'}, 'zenith angle, degrees; towards the mirror: < 0'),
     tag('text', {transform: `translate(12 ${(p.top + p.height - p.bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle'}, 'value, 1/sr'));
   all.forEach((points, c) => plot.append(tag('polyline', {'class': 'channel', fill: 'none', stroke: channelColour(c), 'stroke-width': c === state.channel ? 2.5 : 1.2,
     points: points.map(([a, v]) => `${x(a).toFixed(1)},${y(v).toFixed(1)}`).join(' ')})));
@@ -284,6 +284,6 @@ function begin() {
 function ready() {
   const lost = JSON.parse(document.getElementById('end').textContent).lost;
   ui.lacks.textContent = `Method ${about.method}, cells of the ${about.frame} directions, ${about.leaves} leaves stored in all. Values here differ by at most ` +
-    `${shown(100 * lost, 2)} %; between corners surfaces are straight.` + (about.step > 1 ? ` Every ${about.step}-th of ${about.allViews} view directions is here.` : '') + `\n${about.made}`;
+    `${shown(100 * lost, 2)} %; between corners surfaces are straight.` + (about.step > 1 ? ` One in ${about.step} of the ${about.allViews} view directions is here.` : '') + `\n${about.made}`;
   window.readyAt = performance.now();
 }

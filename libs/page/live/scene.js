@@ -211,10 +211,10 @@ function showFindings(list) {
   if (!list.length) ui.findings.textContent = 'none with a place';
 }
 
-// The scene's date at the time that is shown, UTC.
-function momentOf({epoch, time}) {
+// The scene's date at the time that is shown, UTC; without one about noon of the place on a day of June.
+function momentOf({epoch, time, longitude}) {
   const start = epoch ? Date.parse(/(Z|[-+]\d\d:?\d\d)$/.test(epoch) ? epoch : epoch + 'Z') : NaN;
-  return Number.isFinite(start) ? new Date(start + 1000 * (time || 0)).toISOString().slice(0, 16) : '2026-06-21T10:00';
+  return Number.isFinite(start) ? new Date(start + 1000 * (time || 0)).toISOString().slice(0, 16) : new Date(Date.UTC(2026, 5, 21, 12) - 240000 * longitude).toISOString().slice(0, 16);
 }
 
 // Near what has tags, from where all of it is seen; all of the scene where nothing or nearly everything has one.

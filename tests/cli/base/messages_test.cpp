@@ -294,6 +294,23 @@ TEST_F(Messages, OfMisplacedOrigins) {
   EXPECT_EQ((right.out + right.err).find("SP505"), std::string::npos);
 }
 
+TEST_F(Messages, OfTwoJobsInOneCommand) {
+  write("scene.yaml", kScene);
+  const CommandResult r = run("scene-prep scene.yaml -o scene.h5 --quick-look look.png");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err,
+              HasSubstr("two commands, scene-prep SCENE.yaml -o SCENE.h5, then scene-prep SCENE.h5 --quick-look"));
+}
+
+// A number that stands for "not given" is no default.
+TEST_F(Messages, HelpShowsNoNumberThatIsNone) {
+  for (const char* program : {"dirsig-render", "scene-prep", "sqt-fit"}) {
+    const std::string help = run(std::string(program) + " --help").out;
+    EXPECT_THAT(help, HasSubstr("--threads"));
+    EXPECT_EQ(help.find("=-1"), std::string::npos) << program;
+  }
+}
+
 TEST_F(Messages, OfForeignMeasurements) {
   const struct {
     const char *name, *text, *told;

@@ -140,6 +140,7 @@ TEST_F(Geolocation, TheLookupTablePutsTheTargetWhereItIs) {
     EXPECT_EQ(t.table.header().type, EnviType::int32);
     EXPECT_EQ(t.table.header().map_info[0], "UTM");
     EXPECT_EQ(t.table.header().map_info[7], "32");
+    EXPECT_NE(t.table.header().coordinate_system.find(R"(AUTHORITY["EPSG","32632"]])"), std::string::npos);
     const Agreement a = agreement(t, enu_of_utm, kPixel, false);
     EXPECT_EQ(a.wrong, 0u) << name;
     EXPECT_GT(a.right, 5000u) << name;

@@ -127,6 +127,14 @@ TEST(Page, FromATable) {
   EXPECT_NE(html.find("a note &lt;&amp;&gt;"), std::string::npos);
   EXPECT_NE(html.find("aligned</text>"), std::string::npos);
   EXPECT_NE(html.find("paper</text>"), std::string::npos);
+  // On phones, too: as wide as they are, and no title is cut.
+  EXPECT_NE(html.find("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"), std::string::npos);
+  const auto title_size = [](size_t length) {
+    const std::string svg = svg_of({std::string(length, 'm'), "x", "y", false, false, {}});
+    return std::stod(svg.substr(svg.find("font-size=\"", svg.find("y=\"20\"")) + 11));
+  };
+  EXPECT_EQ(title_size(20), 15);
+  EXPECT_LE(title_size(80) * 0.62 * 80, 640 - 78);
   EXPECT_THROW(page_of_csv(csv, "t", {"byte"}, {"l1"}, "", "c.csv"), Error);
   EXPECT_THROW(page_of_csv("a,b\n1\n", "t", {"a"}, {"b"}, "", "c.csv"), Error);
 }

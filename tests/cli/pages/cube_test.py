@@ -214,10 +214,10 @@ sensors:
         page = self.folder / "x.html"
         done = view("-o", self.folder, "--view", page, "--view-size", "180KiB")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("every 2-th column and row", done.stderr)
+        self.assertIn("one in 2 columns and rows", done.stderr)
         with Browser() as browser:
             browser.open(page)
-            self.assertIn("Only every 2-th", browser.run("document.getElementById('losses').innerText"))
+            self.assertIn("Only one in 2 columns and rows", browser.run("document.getElementById('losses').innerText"))
             self.click_pixel(browser, 10, 20, 50, 50)
             np.testing.assert_allclose(self.picked(browser)[0], values[:, 40, 20], rtol=2 ** -11)
             self.assertEqual(browser.faults, [])

@@ -64,8 +64,18 @@ class LobePage(unittest.TestCase):
             before = browser.run("ui.canvas.toDataURL()")
             browser.drag(box[0] + 200, box[1] + 200, 90, 20)
             self.assertNotEqual(browser.run("ui.canvas.toDataURL()"), before)
+            # The curve has the signs of the plot that sqt-inspect makes: the mirror direction is on the negative side.
+            peak = browser.run("profilesOfView()[0].reduce((a, b) => b[1] > a[1] ? b : a)[0]")
+            self.assertGreater(theta, 5)
+            self.assertLess(peak, 0)
             if KEEP:
                 browser.screenshot(Path(KEEP) / "lobe.png")
+            # No text of the curve is cut where a phone's width is all that there is.
+            browser.run("ui.profile.style.width = '374px'; drawProfile()")
+            cut = browser.run("[...document.querySelectorAll('#profile text')].filter(t => { const b = t.getBoundingClientRect(), s = t.ownerSVGElement"
+                              ".getBoundingClientRect(); return b.left < s.left || b.right > s.right; }).map(t => t.textContent)")
+            self.assertEqual(cut, [])
+            self.assertGreater(browser.run("document.querySelectorAll('#profile text').length"), 8)
             self.assertEqual(browser.faults, [])
             self.assertTrue(local_only(browser.requests), browser.requests)
 

@@ -115,6 +115,19 @@ class ScenePage(unittest.TestCase):
                     self.assertAlmostEqual(sun[key], float(re.search(rf"sun {key} = (\S+)", header)[1]), delta=0.03)
             self.assertEqual(browser.faults, [])
 
+    def test_a_scene_without_a_date_begins_by_day(self):
+        self.write_yard()
+        text = (self.folder / "scene.yaml").read_text()
+        self.assertNotIn("epoch", text)
+        for longitude in (-104.65, 8.7, 151.2):
+            (self.folder / "far.yaml").write_text(re.sub(r"longitude_deg: [-0-9.]+", f"longitude_deg: {longitude}", text))
+            self.assertEqual(prep("far.yaml", "-o", "far.h5", "--view", "far.html", "-q", cwd=self.folder).returncode, 0)
+            with Browser() as browser:
+                browser.open(self.folder / "far.html")
+                sun = browser.run("state.sunAt")
+                self.assertGreater(sun["elevation"], 30)
+                self.assertAlmostEqual(sun["azimuth"], 180, delta=10)  # noon by the sun, but for the equation of time
+
     def test_a_large_mesh_and_many_instances_stay_small(self):
         n = 800  # 1.3 million triangles, twice as many as a page holds
         with open(self.folder / "hill.obj", "w", encoding="ascii") as f:
@@ -133,7 +146,7 @@ world: [{place: hill}, %s]
         done = prep("scene.yaml", "-o", "scene.h5", "--no-crossing-check", "--view", page, cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(f"of {2 * (n - 1) ** 2 + 2 * 8 * 4} triangles", done.stderr)
-        self.assertIn("every 3-th of 120001 instances", done.stderr)
+        self.assertIn("one in 3 of the 120001 instances", done.stderr)
         self.assertLess(page.stat().st_size, 20e6)
         with Browser() as browser:
             browser.open(page)
@@ -142,7 +155,7 @@ world: [{place: hill}, %s]
             lacks = browser.run("document.getElementById('lacks').innerText")
             moved = float(re.search(r"moved by up to (\S+) m", lacks)[1])
             self.assertLess(moved, 3)  # cells of some two metres
-            self.assertIn("every 3-th of 120001", lacks)
+            self.assertIn("one in 3 of the 120001", lacks)
             # A parabola is still one: heights within the slope times what moved.
             browser.run("view.elevation = 89.9, draw()")
             hit = self.click_on(browser, [500.5, 200.5, 20 * (500.5 / n) ** 2])

@@ -101,6 +101,11 @@ class Tools(unittest.TestCase):
             self.assertFalse(browser.run("ui.player.hidden"))
             one = "JSON.stringify(rangesShown())"
             first = browser.run(one)
+            # Before anything is touched, too: the numbers of the other frames come after the first picture.
+            legend = "document.getElementById('legend').innerText"
+            at_first = browser.run(legend)
+            browser.run("draw()")
+            self.assertEqual(browser.run(legend), at_first)
             browser.set("#frame", 2)
             self.assertEqual(browser.run("state.image"), 2)
             self.assertEqual(browser.run("ui.images.value"), "2")

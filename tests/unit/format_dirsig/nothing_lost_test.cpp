@@ -228,6 +228,27 @@ TEST_F(DirsigOddFiles, EveryNumberCountsOrIsToldNotTo) {
   EXPECT_GT(told, size_t{2});
 }
 
+// Who wrote another name is told the right one, or those that there are.
+TEST_F(DirsigOddFiles, HaveNamesThatAreToldTheRightOnes) {
+  const std::string right = text_of("plane.scene");
+  change("plane.scene", "<odbdirectory>", "<origin/><odbdirectory>");
+  EXPECT_EQ(fault_of("plane.scene"), "");
+  const auto note_of = [&](const std::string& end) {
+    std::string note;
+    for (const dirsig::Entry& e : import_->ledger().entries())
+      if (e.path.ends_with(end)) note = e.note;
+    return note;
+  };
+  EXPECT_EQ(note_of("classicscene/origin"), "not known here; is 'sceneorigin' meant?");
+  write("plane.scene", right);
+  change("plane.scene", "plane.odb</geometrylistinclude>", "plane.odb</geometrylistinclude><zzz>plane.odb</zzz>");
+  EXPECT_EQ(fault_of("plane.scene"), "");
+  EXPECT_EQ(note_of("geometrylist/zzz"), "not known here; 'geometrylist' has geometrylistinclude");
+  write("plane.scene", right);
+  change("plane.scene", "plane.odb</", "<filename>plane.odb</filename></");
+  EXPECT_NE(fault_of("plane.scene").find("the name is its own text, not that of 'filename' in it"), std::string::npos);
+}
+
 TEST_F(DirsigOddFiles, HaveUnitsOfTheirOwn) {
   change("camera.platform", "<time>", "<time units=\"milliseconds\">");
   const std::string milli = read("plane.sim");

@@ -72,6 +72,7 @@ TEST(HeatedMaterial, Messages) {
       {spec({}, {{"back", "opne"}}), "did you mean 'open'?"},
       {spec(kLayer, {{"back", "ground"}}), "'back: ground' needs 'back_k'"},
       {spec(with({{"back_k", 290}}), {{"back", "air"}}), "needs 'back_film_w_m2_k'"},
+      {spec(kLayer, {{"back", "air"}}), "needs 'back_k' and 'back_film_w_m2_k'"},
       {spec(with({{"back_k", 290}})), "'back_k' says nothing of a back that is 'adiabatic'"},
       {spec({{"back_k", 290}}, {{"back", "ground"}}), "a surface without heat capacity has 'ground' behind it"},
       {spec({}, {{"convection", "mcadam"}}), "did you mean 'mcadams'?"},
