@@ -19,8 +19,8 @@ def place(p):
 
 
 with open(out, "w") as f:
-    f.write('<svg xmlns="http://www.w3.org/2000/svg" width="620" height="400" font-family="sans-serif" font-size="12">\n')
-    f.write('<rect width="620" height="400" fill="white"/><rect x="60" y="40" width="520" height="300" fill="none" stroke="black"/>\n')
+    f.write('<svg xmlns="http://www.w3.org/2000/svg" width="640" height="400" font-family="sans-serif" font-size="12">\n')
+    f.write('<rect width="640" height="400" fill="white"/><rect x="60" y="40" width="520" height="300" fill="none" stroke="black"/>\n')
     for z in range(-75, 76, 25):
         f.write('<text x="%g" y="358" text-anchor="middle">%d</text>\n' % (place((z, low))[0], z))
     for i in range(5):

@@ -14,6 +14,7 @@ LINK = re.compile(r"(?P<code>`+[^`\n]*`+)|(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^
 TOCTREE = re.compile(r"^```\{toctree\}\n((?::.*\n)*)\n?((?:[^`].*\n)*)```\n?", re.M)
 IMAGE_TAG = re.compile(r'(<img [^>]*?src=")([^"]+)(")')
 FENCE = re.compile(r"^(```|~~~).*?^\1[ \t]*$", re.S | re.M)
+BEGINNING = re.compile(r"# .+\n\n(?!```|[|#\s])(?:.+\n)+\n(?:```|    \S|Example)")  # of a page of the guide
 WORDS = 120  # of a paragraph
 PAPER = "paper/"  # a manuscript keeps to the rules of its journal
 FILES = "files"
@@ -182,6 +183,8 @@ class Site:
                 self.faults.append(f"docs/{page}: a paragraph of {words} words, {WORDS} at most: {' '.join(paragraph.split()[:8])} ...")
         if not INCLUDE.search(text) and not re.search(r"^(```|    \S|> )|\bExample\b", text, re.M):
             self.faults.append(f"docs/{page}: no worked example (a block, a quotation, or a sentence that begins with 'Example')")
+        elif page.startswith("guide/") and not BEGINNING.match(text):
+            self.faults.append(f"docs/{page}: begins with something else than what it is for, in a paragraph, and a worked example")
 
 
 def copy_files(root, out):
