@@ -51,14 +51,14 @@ class Water:
         context.work.mkdir(parents=True, exist_ok=True)
         profile = context.work / "hytes_profile.csv"
         self.given_water = profile_of(next(iter(sorted(folder.glob("tir_*.json"))), folder / "tir.json"), profile)
-        _, self.um, width = columns(folder / "hytes_wavelengths.txt", 3)
+        _, self.um, self.width = columns(folder / "hytes_wavelengths.txt", 3)
         nm, radiance = columns(next(iter(sorted(folder.glob("extracted_points_water*.txt"))), folder / "water.txt"), 2)
         at = [int(np.argmin(abs(nm - 1e3 * x))) for x in self.um]
         self.kelvin = brightness(self.um, 10 * radiance[at])
         self.emissivity = emissivity(self.um)
         continuum = ", water_continuum: '%s'" % context.continuum if context.continuum else ""
         self.table = Table(context, "hytes", "profile: '%s', scene_height_m: 1155, ozone_du: 300, ppm: {co2: 411}, aerosol: {model: rural, visibility_km: 50}%s"
-                           % (profile, continuum), gaussian_bands(1e3 * self.um, 1e3 * width),
+                           % (profile, continuum), gaussian_bands(1e3 * self.um, 1e3 * self.width),
                            "H2OSTR: %s\nsurface_elevation_km: %g\nobserver_altitude_km: %g\nsolar_zenith: 30\ncheck: false\n" % (WATER, GROUND_KM, SENSOR_KM), ())
 
     def seen(self, water, kelvin):
@@ -91,13 +91,21 @@ def noise(context, um, kelvin):
     return level / ((planck(um, kelvin + 0.5) - planck(um, kelvin - 0.5)) / 10)
 
 
+def rest_of(windows, um, ours, theirs, at):
+    cells = []
+    for low, high in windows:
+        part = at & (1e3 * um >= low) & (1e3 * um <= high)
+        cells.append("%.1f-%.1f um %.2f K rms" % (low / 1e3, high / 1e3, np.sqrt(((ours - theirs)[part] ** 2).mean())))
+    return "; ".join(cells) + ": bands that the gas tables do not resolve, and the instrument beyond 11.3 um (below)"
+
+
 def row_of(water, windows, ours, theirs, sigma, state, what):
     at = within(1e3 * water.um, windows)
     found = judged(ours[at], theirs[at], sigma[at])
     bands = "%s um" % ", ".join("%.1f-%.1f" % (low / 1e3, high / 1e3) for low, high in windows)
     return Row("HyTES", "water, ER-2, 20.1 km", "%d bands, %s, %s" % (at.sum(), bands, what), "profile, ozone 300 DU, index of water",
                "water vapour: %.2f times the profile's %.2f g/cm2; water: %.2f K" % (state[0] / water.given_water, water.given_water, state[1]), "K",
-               rest="see below", details={"water_g_cm2": float(state[0]), "water_k": float(state[1])}, **found)
+               rest=rest_of(windows, water.um, ours, theirs, at), details={"water_g_cm2": float(state[0]), "water_k": float(state[1])}, **found)
 
 
 def run(context):
@@ -115,10 +123,11 @@ def run(context):
     quiet = within(1e3 * water.um, [(8600, 9000)])
     zigzag = water.kelvin[quiet][1:-1] - 0.5 * (water.kelvin[quiet][2:] + water.kelvin[quiet][:-2])
     far = within(1e3 * water.um, [(11800, 12000)])
+    wide = 1e4 * water.width / water.um**2
     if zigzag.size > 5 and far.any():
         result.notes += ["The spectrum is an extract that its makers adjusted by an offset.",
                          "Bands are %.0f to %.0f cm-1 wide and the builtin gases are smooth over 20 cm-1: lines of water from 8 to 9 um and of ozone are not resolved. "
-                         "Bands beside each other differ by %.1f K rms from 8.6 to 9.0 um." % (10.5e3 * 0.03 / 12**2 * 1.36, 10.5e3 * 0.03 / 8.2**2, np.sqrt((zigzag**2).mean()) / np.sqrt(1.5)),
-                         "From 11.3 um on the spectrum falls to %.0f K at 11.9 um. Ours with transmittance 0.65 stays at %.0f K, and no gas absorbs as much there: "
-                         "those bands are left out of the fit." % (water.kelvin[far].mean(), ours[far].mean())]
+                         "Bands differ from the mean of their neighbours by %.1f K rms from 8.6 to 9.0 um." % (wide.min(), wide.max(), np.sqrt((zigzag**2).mean())),
+                         "From 11.3 um on the spectrum falls to %.0f K at 11.9 um. Ours (transmittance %.2f) stays at %.0f K, and no gas absorbs as much there: "
+                         "those bands are left out of the fit." % (water.kelvin[far].mean(), up[far].mean(), ours[far].mean())]
     return result

@@ -11,15 +11,11 @@ Ours beside what instruments measured. Command: `scripts/real_world --data FOLDE
 - Fitted: every number that was adjusted to the data. Nothing else was.
 - *Held out*: run once, after the code was frozen.
 - Ours: spread of the given aerosol, the gas model's error ([ACCURACY.md](../../libs/air/ACCURACY.md)), scalar scattering in the blue ([air_lut](../../formats/air_lut/FORMAT.md)).
-- Gases: builtin%(continuum)s.
+- Gases: builtin, but where a water continuum is named.
 
 | instrument | place | bands | given | fitted | bias | rms | share | what explains the rest |
 |---|---|---|---|---|---|---|---|---|
 """
-
-
-def number(value, unit):
-    return "%+.2g %s" % (value, unit)
 
 
 def row_text(row):
@@ -29,9 +25,9 @@ def row_text(row):
         row.data, place, row.bands, row.given, row.fitted or "nothing", "%+.3g %s" % (row.bias, row.unit), "%.3g %s" % (row.rms, row.unit), share, row.rest)
 
 
-def markdown(results, context):
+def markdown(results):
     seconds = ", ".join("%s %.0f s" % (name, r.seconds) for name, r in results.items())
-    text = HEAD % {"seconds": seconds, "continuum": " with the water continuum of MT_CKD" if context.continuum else ""}
+    text = HEAD % {"seconds": seconds}
     text += "".join(row_text(row) for result in results.values() for row in result.rows)
     for name, result in results.items():
         text += "\n## %s\n\n" % name.replace("_", " ").capitalize()
@@ -46,9 +42,9 @@ def as_json(results):
     return json.dumps({n: [{k: clean(v) for k, v in row.items()} for row in many] for n, many in rows.items()}, indent=1) + "\n"
 
 
-def write(results, context, out):
+def write(results, out):
     out.mkdir(parents=True, exist_ok=True)
-    (out / "real_world.md").write_text(markdown(results, context))
+    (out / "real_world.md").write_text(markdown(results))
     (out / "rows.json").write_text(as_json(results))
     for result in results.values():
         for name, svg in result.pictures.items():
