@@ -126,6 +126,7 @@ def run(context):
     wide = 1e4 * water.width / water.um**2
     if zigzag.size > 5 and far.any():
         result.notes += ["The spectrum is an extract that its makers adjusted by an offset.",
+                         "The column of water vapour and the water's temperature trade against each other; the column is kept below the table's %.1f g/cm2." % WATER[-1],
                          "Bands are %.0f to %.0f cm-1 wide and the builtin gases are smooth over 20 cm-1: lines of water from 8 to 9 um and of ozone are not resolved. "
                          "Bands differ from the mean of their neighbours by %.1f K rms from 8.6 to 9.0 um." % (wide.min(), wide.max(), np.sqrt((zigzag**2).mean())),
                          "From 11.3 um on the spectrum falls to %.0f K at 11.9 um. Ours (transmittance %.2f) stays at %.0f K, and no gas absorbs as much there: "

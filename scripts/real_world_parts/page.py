@@ -5,7 +5,10 @@ import math
 
 HEAD = """# Real instruments
 
-Ours beside what instruments measured. Command: `scripts/real_world --data FOLDER --held-out --page` (%(seconds)s; `--help` says what FOLDER holds).
+Ours beside what instruments measured, in one command; `--help` says what FOLDER holds. It took %(seconds)s beside other work.
+
+    scripts/real_world                                                       # the extract that ships
+    scripts/real_world --data FOLDER --continuum FILE --held-out --page      # this page
 
 - Bias and rms: ours less the instrument's. Share: values within two standard deviations, of the stated uncertainty and ours in quadrature.
 - Fitted: every number that was adjusted to the data. Nothing else was.
@@ -16,6 +19,9 @@ Ours beside what instruments measured. Command: `scripts/real_world --data FOLDE
 | instrument | place | bands | given | fitted | bias | rms | share | what explains the rest |
 |---|---|---|---|---|---|---|---|---|
 """
+
+
+TITLES = {"pasadena": "AVIRIS-NG over Pasadena", "mfrsr": "Shadowband radiometer", "hytes": "HyTES over water", "modtran_paths": "Paths of MODTRAN"}
 
 
 def row_text(row):
@@ -30,7 +36,7 @@ def markdown(results):
     text = HEAD % {"seconds": seconds}
     text += "".join(row_text(row) for result in results.values() for row in result.rows)
     for name, result in results.items():
-        text += "\n## %s\n\n" % name.replace("_", " ").capitalize()
+        text += "\n## %s\n\n" % TITLES[name]
         text += "".join("- %s\n" % note for note in result.notes)
         text += "".join("\n![%s](../pictures/real_world/%s.svg)\n" % (p.replace("_", " "), p) for p in result.pictures)
     return text

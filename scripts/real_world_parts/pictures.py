@@ -5,6 +5,7 @@ import numpy as np
 
 COLOURS = ["#1f5fa8", "#c8501e", "#2b8a3e", "#7048a8"]
 WIDTH, HEIGHT, LEFT, BOTTOM, TOP = 720, 300, 64, 40, 30
+MOST = 150  # points of a curve without a line
 
 
 def ticks(low, high, count=6):
@@ -15,6 +16,8 @@ def ticks(low, high, count=6):
 
 def spectra(title, x_unit, y_unit, curves, points=False):
     """curves: (name, x, y, sigma or None); the band is of 2 sigma. NaN in y leaves a gap; points: no line between values."""
+    if points:
+        curves = [(name, *(None if v is None else v[:: 1 + len(x) // MOST] for v in (x, y, sigma))) for name, x, y, sigma in curves]
     xs = np.concatenate([c[1] for c in curves])
     bands = [(c[2] - 2 * (0 if c[3] is None else c[3]), c[2] + 2 * (0 if c[3] is None else c[3])) for c in curves]
     middle = np.concatenate([c[2] for c in curves])
