@@ -11,7 +11,7 @@ MOST = 150  # points of a curve without a line
 def ticks(low, high, count=6):
     step = 10 ** np.floor(np.log10((high - low) / count))
     step *= next(m for m in (1, 2, 5, 10) if (high - low) / (step * m) <= count)
-    return np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
+    return np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step + 0.0
 
 
 def spectra(title, x_unit, y_unit, curves, points=False):
