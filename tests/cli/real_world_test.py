@@ -85,6 +85,9 @@ class RealWorld(unittest.TestCase):
         self.assertRegex(run(data=FOLDER / "nowhere", code=2), "no folder")
         broken = changed("broken", "pasadena/wavelength_fit.txt", r"^(\d+\s+)0\.43\d*", r"\g<1>word")
         self.assertRegex(run("--only", "pasadena", data=broken, out="out_broken", code=1), r"wavelength_fit.txt: not a table of numbers")
+        (FOLDER / "broken/mfrsr/extract.csv").write_text("hours_utc,zenith_deg\n14,60\n")
+        self.assertRegex(run("--only", "mfrsr", data=FOLDER / "broken", out="out_broken", code=1), "mfrsr: what stands in .*direct_1")
+        self.assertRegex(run("--continuum", FOLDER / "none.csv", code=1), "--continuum: no file")
         shutil.rmtree(FOLDER / "broken/hytes")
         self.assertRegex(run("--only", "hytes", data=FOLDER / "broken", out="out_broken", code=1), "hytes is not there")
 
