@@ -231,4 +231,6 @@ def run(context):
     result.notes.append("Direct beam with the aerosol of one time (sun 30 deg high), 5th to 95th percentile of the morning in percent: %s. The aerosol grew." % "; ".join(drift(day, sky, good, calibrations)))
     result.notes.append("The shadowband moves in steps: every 20 minutes its shade drifts off the sun, direct light falls by 2 %% and that light is counted as diffuse "
                         "(40 %% more at 869 nm). `band on the sun`: the quarter of the times in each %d minutes in which it hides the sun best." % (BAND_PERIOD_S // 60))
+    result.notes.append("From 17.4 to 18.4 h the band fails at times: diffuse light holds the sun. The data set's quality file names those times for one filter "
+                        "(672 nm); they stand in all figures here.")
     return result
