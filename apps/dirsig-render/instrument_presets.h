@@ -1,0 +1,12 @@
+// Imaging instruments by published numbers, as texts to paste into `sensors:`.
+#pragma once
+#include <string>
+
+namespace suite {
+
+// A line for each.
+std::string list_instrument_presets();
+// YAML of one platform, with the source of its numbers. Error: no such preset.
+std::string instrument_preset(const std::string& name);
+
+}  // namespace suite
