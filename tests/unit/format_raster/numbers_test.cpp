@@ -48,7 +48,7 @@ TEST(RasterNumbers, PortableMapsOfAnyGreatestValue) {
   };
   EXPECT_THAT(read("P2\n# a comment\n4 1\n3\n0 1 2 3\n"), ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(read("P2 4 1 1000 0 1 2 1000"), ElementsAre(0, 1, 2, 1000));
-  EXPECT_THAT(read(std::string("P5\n4 1\n3\n\0\1\2\3", 15)), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(read(std::string("P5\n4 1\n3\n\0\1\2\3", 13)), ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(read(std::string("P5 2 1 4095\n\x0f\xff\0\x64", 16)), ElementsAre(4095, 100));
   EXPECT_THAT(read("P3 1 1 7 1 2 7"), ElementsAre(1, 2, 7));
   EXPECT_THAT(read(std::string("P6 1 1 31\n\1\2\x1f", 13)), ElementsAre(1, 2, 31));
