@@ -51,7 +51,7 @@ class PointsInView {
 
   void add(const FarPoints& all, const FarPoint& point, std::vector<SeenPoint>& seen) {
     std::vector<double> above;
-    SeenPoint found{point.number, point.v, 0, 0, std::vector<double>(result_.bands, 0.0)};
+    SeenPoint found{point.name, point.v, 0, 0, std::vector<double>(result_.bands, 0.0)};
     double weight = 0, time = -1;
     Vec3 origin;
     const auto direction_at = [&](double t) { return all.direction_at(point, t); };

@@ -45,7 +45,7 @@ class NightSky final : public Light {
     add(d, scale, radiance, map_->components().size());
   }
   void add_without_points(Dir d, double, float scale, std::span<float> radiance) const override {
-    add(d, scale, radiance, points_ ? map_->first_star() : map_->components().size());
+    add(d, scale, radiance, points_ ? map_->first_point() : map_->components().size());
   }
   const FarPoints* points() const override { return points_.get(); }
   size_t members() const override { return 0; }
@@ -123,7 +123,8 @@ LightSpectra spectra_of(const NightMap& map) {
   const std::vector<double> plane = map.integrals().plane;
   for (size_t i = 0; i < components.size(); ++i) {
     const bool red = i == 1 && components[1].part == NightPart::zodiacal;
-    if (red) continue;
+    const bool set = plane[i] <= 0;
+    if (red || set) continue;
     seen.names.push_back(strf("the night sky, %s %zu", name_of(components[i].part).c_str(), i));
     all.push_back(components[i].spectrum);
     bright.push_back(static_cast<float>(std::max(0.0, plane[i]) / kPi));
@@ -148,6 +149,7 @@ class NightSkyLight final : public LightSpec {
     JulianDate tt, ut1;
     double seconds;
     std::shared_ptr<const NightMap> map;
+    std::vector<SeenPlanet> planets;
     bool media;                                    // in the scene: real air is then no field that knows it
     std::shared_ptr<const FarPoints> points = {};  // not before it has settled
     bool settled = false;
@@ -162,9 +164,11 @@ class NightSkyLight final : public LightSpec {
     const SceneFrame frame =
         spec_.place ? SceneFrame(*spec_.place) : frame_of(at.scene, spec_.time.where, "a night sky");
     const Instant epoch = instant_of(spec_.time), instant = epoch + at.seconds;
-    Now now{frame,   julian_tt(instant),     julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds,
-            nullptr, !at.scene.media.empty()};
-    now.map = std::make_shared<const NightMap>(spec_, CelestialSphere(frame, now.tt, now.ut1));
+    Now now{frame, julian_tt(instant),     julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds, nullptr,
+            {},    !at.scene.media.empty()};
+    const CelestialSphere sphere(frame, now.tt, now.ut1);
+    now.planets = seen_planets(sphere, now.tt);
+    now.map = std::make_shared<const NightMap>(spec_, sphere, now.planets);
     at.said.push_back(sentence_of(*now.map, instant));
     return std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
@@ -180,15 +184,16 @@ class NightSkyLight final : public LightSpec {
       said.push_back(
           "night sky: the air dims it, and what it scatters of it is left out (real air with 'scattering: diffuse' and "
           "adjacency, without media, has it)");
-    const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
-    const bool points = spec_.catalogue && spec_.in_view && scale > 0;
+    const bool points =
+        spec_.in_view && ((spec_.catalogue && scale(NightPart::stars) > 0) || scale(NightPart::planets) > 0);
     if (points && (traced || now.media))
       said.push_back(
-          "night sky: under `scattering: traced`, or with media in the scene, its stars are spread over cells of 3 "
+          "night sky: under `scattering: traced`, or with media in the scene, its stars and planets are spread over "
+          "cells of 3 "
           "degrees, in views as well");
     if (points && !traced && !now.media)
       now.points =
-          std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all)), scale));
+          std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all))));
     all.lights[own] = std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
 
@@ -216,14 +221,20 @@ class NightSkyLight final : public LightSpec {
     }
     return air;
   }
-  FarPoints points_of(const CelestialSphere& sphere, double scale) const {
+  double scale(NightPart part) const { return spec_.scale[static_cast<size_t>(part)]; }
+  FarPoints points_of(const CelestialSphere& sphere) const {
     FarPoints all;
     all.pole = sphere.pole();
     all.seconds = now_->seconds;
-    all.scale = scale;
-    for (const CatalogueStar& s : *spec_.catalogue)
-      if (s.v <= spec_.faintest)
-        all.points.push_back({s.number, s.v, star_temperature(s.colour), sphere.seen(s.place)});
+    if (const double s = scale(NightPart::stars); spec_.catalogue && s > 0)
+      for (const CatalogueStar& star : *spec_.catalogue)
+        if (star.v <= spec_.faintest)
+          all.points.push_back(
+              {std::to_string(star.number), star.v, s, star_temperature(star.colour), {}, sphere.seen(star.place)});
+    if (const double s = scale(NightPart::planets); s > 0)
+      for (const SeenPlanet& p : now_->planets)
+        all.points.push_back({name_of(p.planet), p.v, s, 0, std::make_shared<const Curve>(planet_shape(p.planet)),
+                              sphere.seen(p.place)});
     return all;
   }
   static std::string sentence_of(const NightMap& map, Instant instant) {
@@ -310,7 +321,7 @@ LightSpecPtr make_light(NightSkyLightSpec spec) { return std::make_shared<const 
 LightRow night_sky_row() {
   return {
       {"night_sky",
-       "natural night sky by place and date: zodiacal light, airglow, starlight, 9096 stars (0.3 to 2.5 um)",
+       "natural night sky by place and date: zodiacal light, airglow, starlight, 9096 stars, planets (0.3 to 2.5 um)",
        "W/(m2 sr um)", read_night_sky},
       false,
       "The sky by night. A sample of it at every node, with a visibility ray; zodiacal light, airglow and stars are "

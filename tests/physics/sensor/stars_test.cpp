@@ -97,6 +97,30 @@ TEST(Stars, FrameCameraKeepsTheirEnergyAndPlace) {
   }
 }
 
+// Jupiter, high in the west that evening: listed by its name where the theory has it, as bright as a star of its
+// magnitude and colour, and dark when the part is not asked for.
+TEST(Stars, PlanetsAreOnTheFocalPlaneToo) {
+  const Instant t = instant_from_utc(parse_iso8601(kUtc));
+  const SeenPlanet jupiter = seen_planets(sphere(), julian_tt(t))[static_cast<size_t>(Planet::jupiter)];
+  const Dir place = sphere().without_air(jupiter.place);
+  ASSERT_GT(place.z, 0.5);
+  NightSkyLightSpec night;
+  night.scale = {0, 0, 0, 0, 0, 2};
+  night.time.utc = kUtc;
+  night.place = kPlace;
+  SourceSpecs sources;
+  sources.add(night);
+  PlatformKit kit;
+  kit.render(ground(), sources, camera(place, 0, 0));
+  const double expected = 2 * kVegaIrradiance * flux_of(jupiter.v) * planet_shape(Planet::jupiter).mean(0.545, 0.555);
+  EXPECT_NEAR(energy(kit.shots[0], 1e4) / expected, 1, 1e-4);
+  bool listed = false;
+  for (const TextFile& text : kit.shots[0].texts) listed |= text.text.find("\njupiter,-2.") != std::string::npos;
+  EXPECT_TRUE(listed);
+  kit.render(ground(), stars_alone({}), camera(place, 0, 0));
+  EXPECT_EQ(energy(kit.shots[1], 1e4), 0);
+}
+
 // Starlight is unpolarised: half of it passes a polarizer, as Q and U of the light behind say, and none shows without.
 TEST(Stars, PolarizersTakeHalf) {
   const Dir star = sphere().without_air(kStar.place);

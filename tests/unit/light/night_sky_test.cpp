@@ -250,7 +250,10 @@ TEST(NightMap, StarsKeepTheirLight) {
 
 // A sky of 259 S10 lights a plane with 6.8e-4 lx: the whole is near, and by night the eye sees more.
 TEST(NightMap, Illuminance) {
-  const NightIlluminance lx = illuminance_of(NightMap(whole_sky(), sphere_at("2026-03-20T23:00:00Z", kPlace)));
+  const char* const utc = "2026-03-20T23:00:00Z";
+  const CelestialSphere sphere = sphere_at(utc, kPlace);
+  const std::vector<SeenPlanet> planets = seen_planets(sphere, julian_tt(instant_from_utc(parse_iso8601(utc))));
+  const NightIlluminance lx = illuminance_of(NightMap(whole_sky(), sphere, planets));
   const double photopic = std::accumulate(lx.photopic.begin(), lx.photopic.end(), 0.0),
                scotopic = std::accumulate(lx.scotopic.begin(), lx.scotopic.end(), 0.0);
   EXPECT_GT(photopic, 5e-4);
