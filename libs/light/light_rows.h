@@ -11,6 +11,7 @@
 #include "light/intensity_table.h"
 #include "light/lamp_schedule.h"
 #include "light/light_spec.h"
+#include "light/night/stars.h"
 
 namespace suite {
 
@@ -38,6 +39,8 @@ struct LightContext {
   std::function<IntensityTable(const Params& path)> candela;
   // When a lamp is how bright.
   std::function<std::shared_ptr<const LampSchedule>(const Params&)> schedule;
+  // Stars of a catalogue of the user.
+  std::function<std::vector<CatalogueStar>(const Params& path)> stars = {};
   std::optional<SourceTime> date = {};       // of second 0, where the text says it
   std::vector<AskedCurve>* asked = nullptr;  // receives the curves that were read
   size_t number = 1;                         // of the entry in its list

@@ -229,8 +229,7 @@ class NightSkyLight final : public LightSpec {
     if (const double s = scale(NightPart::stars); spec_.catalogue && s > 0)
       for (const CatalogueStar& star : *spec_.catalogue)
         if (star.v <= spec_.faintest)
-          all.points.push_back(
-              {std::to_string(star.number), star.v, s, star_temperature(star.colour), {}, sphere.seen(star.place)});
+          all.points.push_back({star.name, star.v, s, star.kelvin, {}, sphere.seen(star.place)});
     if (const double s = scale(NightPart::planets); s > 0)
       for (const SeenPlanet& p : now_->planets)
         all.points.push_back({name_of(p.planet), p.v, s, 0, std::make_shared<const Curve>(planet_shape(p.planet)),
@@ -275,6 +274,17 @@ void read_parts(const Params& p, NightSkySpec& sky) {
   }
 }
 
+void read_catalogue(const Params& p, const LightContext& context, NightSkySpec& sky) {
+  const auto catalogue = p.find("catalogue");
+  const std::string which = catalogue ? catalogue->as_text() : "builtin";
+  if (which == "builtin") {
+    sky.catalogue = {std::shared_ptr<void>(), &bright_star_catalogue()};
+  } else if (which != "none") {
+    sky.catalogue = std::make_shared<const std::vector<CatalogueStar>>(context.stars(*catalogue));
+    sky.faintest = 40;
+  }
+}
+
 SourceTime time_of(const Params& p, const LightContext& context) {
   if (const auto time = p.find("time_utc")) {
     SourceTime given{time->as_text(), time->where()};
@@ -294,10 +304,8 @@ LightSpecPtr read_night_sky(const Params& p, const LightContext& context) {
                          place->number_in("longitude_deg", -180, 360, "degrees"),
                          place->number_in("height_m", -1000, 20000, "m above WGS84", 0)};
   }
-  const auto catalogue = p.find("catalogue");
-  if (!catalogue || catalogue->as_choice({"builtin", "none"}) == 0)
-    sky.catalogue = {std::shared_ptr<void>(), &bright_star_catalogue()};
-  sky.faintest = p.number_in("stars_to_mag", -2, 20, "mag", sky.faintest);
+  read_catalogue(p, context, sky);
+  sky.faintest = p.number_in("stars_to_mag", -2, 40, "mag", sky.faintest);
   if (const auto resolve = p.find("resolve_stars")) sky.in_view = resolve->as_choice({"in_view", "none"}) == 0;
   sky.solar_flux = p.number_in("solar_flux_sfu", 50, 400, "sfu", sky.solar_flux);
   return make_light(std::move(sky));

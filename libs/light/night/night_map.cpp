@@ -91,7 +91,7 @@ void NightMap::add_stars(const NightSkySpec& spec, const CelestialSphere& sphere
     const double flux = flux_of(star.v);
     sum += flux;
     if (!(s > 0)) continue;
-    const auto [i, t] = between(star_temperature(star.colour));
+    const auto [i, t] = between(star.kelvin);
     auto& cell = cells_[cell_of(sphere.to_celestial(sphere.without_air(star.place)))];
     cell[i] += static_cast<float>((1 - t) * flux / kCell);
     cell[i + 1] += static_cast<float>(t * flux / kCell);
