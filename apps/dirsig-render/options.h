@@ -15,7 +15,7 @@ struct RenderOptions {
                                             convert;
   std::string view, view_size = "256MiB";  // page
   std::string detect;                      // stored responses of laser pulses
-  std::string lidar_preset;                // name
+  std::string preset, lidar_preset;        // name
   std::string part, plan;                  // K/N; folder of a state of the whole
   std::vector<std::string> merge;          // folders of parts
   std::string study, study_budgets = "4,8,16,32,64", reference;
@@ -25,7 +25,7 @@ struct RenderOptions {
   bool state = false, resume = false, load_all = false, heat_only = false, strict = false;
   bool dry_run = false, air = false, list_sensors = false, list_sources = false, list_models = false,
        list_truth = false, list_channels = false, list_detectors = false, list_image_detectors = false,
-       list_deflectors = false, lidar_presets = false, list_diagnostics = false;
+       list_deflectors = false, list_presets = false, lidar_presets = false, list_diagnostics = false;
   std::vector<std::string> mute;  // codes of diagnostics that are not printed
 };
 
