@@ -11,6 +11,7 @@
 #include "formats/raster/raster.h"
 #include "formats/sim_text/air.h"
 #include "formats/sim_text/air_tables.h"
+#include "formats/sim_text/lamp_map.h"
 #include "formats/sqt/sqt.h"
 #include "formats/star_catalogue/star_catalogue.h"
 #include "optics/phase_function.h"
@@ -227,6 +228,7 @@ SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
                        read_intensity,
                        read_candela,
                        [&](const Params& p) { return read_lamp_schedule(p, motion); },
+                       read_lamp_map,
                        read_stars,
                        date ? std::optional(SourceTime{date->as_text(), date->where()}) : std::nullopt,
                        &asked};

@@ -10,6 +10,7 @@
 #include "light/kinds/rows.h"
 #include "light/kinds/sky.h"
 #include "motion/ut1.h"
+#include "spectral/photopic.h"
 
 namespace suite {
 
@@ -55,7 +56,7 @@ class NightSky final : public Light {
   }
 
  private:
-  static constexpr size_t kMost = 32;  // components
+  static constexpr size_t kMost = 64;  // components
 
   // Of the first components.
   void add(Dir d, float scale, std::span<float> radiance, size_t count) const {
@@ -173,9 +174,13 @@ class NightSkyLight final : public LightSpec {
     return std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
 
-  // Air lifts the stars; where paths are scattered in it, nobody knows what it leaves of one.
+  // Air lifts the stars; it would dim a second time what cities make of it; where paths are scattered in it, nobody
+  // knows what it leaves of one.
   void settle(SourceSpecs& all, size_t own, std::vector<std::string>& said) const override {
     if (now_->settled) return;
+    if (!spec_.glows.empty() && all.has_air())
+      throw Error(all.where_air(), "city_glow is the light of air itself, and the simulation's air would dim it again",
+                  "leave out the air or city_glow; in traced air lamps make their own glow");
     Now now = *now_;
     now.settled = true;
     const bool traced = all.air && all.air->scattering == AirScattering::traced;
@@ -285,6 +290,40 @@ void read_catalogue(const Params& p, const LightContext& context, NightSkySpec& 
   }
 }
 
+CityGlow read_glow(const Params& p, const LightContext& context) {
+  CityGlow glow;
+  glow.azimuth = azimuth_from_compass_deg(p.number_in("azimuth_deg", -360, 360, "degrees, compass"));
+  glow.width = p.number_in("width_deg", 1, 360, "degrees", 20) * kDegree;
+  glow.height = p.number_in("height_deg", 1, 360, "degrees", 15) * kDegree;
+  const Params given = p.at("spectrum");
+  const Curve spectrum = context.positive(p, "spectrum", "any unit");
+  if (!spectrum.covers(0.38, 0.78))
+    throw given.error("the spectrum reaches from " + spectrum.range_text() + ", not from 0.38 to 0.78 um",
+                      "give a longer curve, or declare 'outside: hold' or 'zero'");
+  const double lumens = photopic(spectrum);
+  if (!(lumens > 0)) throw given.error("has no light that the eye sees, by which a glow is given");
+  const auto people = p.find("population");
+  if (!people == !p.has("horizon_cd_m2")) throw p.error("a glow has either 'horizon_cd_m2' or 'population'");
+  double luminance = 0;
+  if (people) {
+    luminance = walker_luminance(people->as_number_in(100, 1e8, "people"),
+                                 p.at("distance_km").as_number_in(5, 100, "km, where Walker's law means something")) *
+                std::exp(45 * kDegree / glow.height);
+  } else {
+    luminance = p.number_in("horizon_cd_m2", 0, 1e4, "cd/m2");
+  }
+  glow.horizon = spectrum.scaled(luminance / lumens);
+  return glow;
+}
+
+void read_glows(const Params& p, const LightContext& context, NightSkySpec& sky) {
+  constexpr size_t kMostGlows = 32;
+  const auto list = p.find("city_glow");
+  if (!list) return;
+  for (const Params& one : list->items()) sky.glows.push_back(read_glow(one, context));
+  if (sky.glows.size() > kMostGlows) throw list->error(strf("more than %zu glows", kMostGlows));
+}
+
 SourceTime time_of(const Params& p, const LightContext& context) {
   if (const auto time = p.find("time_utc")) {
     SourceTime given{time->as_text(), time->where()};
@@ -305,6 +344,7 @@ LightSpecPtr read_night_sky(const Params& p, const LightContext& context) {
                          place->number_in("height_m", -1000, 20000, "m above WGS84", 0)};
   }
   read_catalogue(p, context, sky);
+  read_glows(p, context, sky);
   sky.faintest = p.number_in("stars_to_mag", -2, 40, "mag", sky.faintest);
   if (const auto resolve = p.find("resolve_stars")) sky.in_view = resolve->as_choice({"in_view", "none"}) == 0;
   sky.solar_flux = p.number_in("solar_flux_sfu", 50, 400, "sfu", sky.solar_flux);

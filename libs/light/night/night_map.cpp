@@ -28,7 +28,7 @@ std::pair<size_t, double> between(double kelvin) {
 }  // namespace
 
 std::string name_of(NightPart part) {
-  constexpr const char* kNames[] = {"zodiacal", "airglow", "starlight", "galactic", "stars", "planets"};
+  constexpr const char* kNames[] = {"zodiacal", "airglow", "starlight", "galactic", "stars", "planets", "city_glow"};
   static_assert(std::size(kNames) == kNightParts);
   return kNames[static_cast<size_t>(part)];
 }
@@ -68,6 +68,12 @@ NightMap::NightMap(const NightSkySpec& spec, const CelestialSphere& sphere, std:
   if (const double s = scale(NightPart::starlight); s > 0) add(NightPart::starlight, s10, s);
   first_.galactic = components_.size();
   if (const double s = scale(NightPart::galactic); s > 0) add(NightPart::galactic, s10, s);
+  first_.glow = components_.size();
+  if (const double s = scale(NightPart::city_glow); s > 0)
+    for (const CityGlow& glow : spec.glows) {
+      glows_.push_back(glow);
+      add(NightPart::city_glow, {glow.horizon}, s);
+    }
   first_.stars = components_.size();
   if (spec.catalogue) add_stars(spec, sphere);
   first_.planets = components_.size();
@@ -127,7 +133,8 @@ void NightMap::weights(Dir d, std::span<double> w) const {
         i > 0 && heights_[i] == heights_[i - 1] ? w[first_.airglow + i - 1] : van_rhijn(sine, heights_[i]);
   const double stars = starlight_s10(dot(d, galactic_pole_));
   if (first_.galactic > first_.starlight) w[first_.starlight] = unresolved_ * stars;
-  if (first_.stars > first_.galactic) w[first_.galactic] = kGalactic * stars + kExtragalactic;
+  if (first_.glow > first_.galactic) w[first_.galactic] = kGalactic * stars + kExtragalactic;
+  for (size_t i = 0; i < glows_.size(); ++i) w[first_.glow + i] = relative_glow(glows_[i], d);
   if (cells_.empty() && planets_.empty()) return;
   const size_t at = cell_of(sphere_.to_celestial(d));
   if (!cells_.empty())

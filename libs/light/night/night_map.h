@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "light/night/airglow.h"
+#include "light/night/city_glow.h"
 #include "light/night/planets.h"
 #include "light/night/stars.h"
 #include "motion/celestial.h"
@@ -25,15 +26,17 @@ enum class NightPart : uint8_t {
   galactic,   // starlight scattered by dust between the stars, and galaxies
   stars,      // of the catalogue
   planets,    // Mercury to Neptune
+  city_glow,  // of far cities
 };
-inline constexpr size_t kNightParts = 6;
+inline constexpr size_t kNightParts = 7;
 std::string name_of(NightPart part);
 
 struct NightSkySpec {
-  std::array<double, kNightParts> scale{1, 1, 1, 1, 1, 1};           // of the parts; 0 = it is left out
+  std::array<double, kNightParts> scale{1, 1, 1, 1, 1, 1, 1};        // of the parts; 0 = it is left out
   std::shared_ptr<const std::vector<CatalogueStar>> catalogue = {};  // null = none
-  double faintest = 8;                                               // V: fainter stars of it are not used
-  double solar_flux = 130;                                           // sfu
+  std::vector<CityGlow> glows = {};
+  double faintest = 8;      // V: fainter stars of it are not used
+  double solar_flux = 130;  // sfu
 };
 
 // A planet at the moment.
@@ -74,10 +77,11 @@ class NightMap {
   static constexpr size_t kColours = 7;
   // Where the components of a part begin; as many as components() where there are none.
   struct First {
-    size_t zodiacal, airglow, starlight, galactic, stars, planets;
+    size_t zodiacal, airglow, starlight, galactic, glow, stars, planets;
   };
   CelestialSphere sphere_;
   double zodiacal_scale_ = 0;
+  std::vector<CityGlow> glows_;
   Dir galactic_pole_;  // scene ENU
   std::vector<Component> components_;
   First first_{};
