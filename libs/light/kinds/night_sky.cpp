@@ -296,7 +296,7 @@ CityGlow read_glow(const Params& p, const LightContext& context) {
   glow.width = p.number_in("width_deg", 1, 360, "degrees", 20) * kDegree;
   glow.height = p.number_in("height_deg", 1, 360, "degrees", 15) * kDegree;
   const Params given = p.at("spectrum");
-  const Curve spectrum = context.positive(p, "spectrum", "any unit");
+  const Curve spectrum = context.positive(given, "spectrum", "any unit");
   if (!spectrum.covers(0.38, 0.78))
     throw given.error("the spectrum reaches from " + spectrum.range_text() + ", not from 0.38 to 0.78 um",
                       "give a longer curve, or declare 'outside: hold' or 'zero'");
