@@ -110,8 +110,9 @@ TEST_F(CityLights, Refused) {
 // A glow of far cities is light of air: beside the simulation's own air it is refused, not dimmed twice.
 TEST_F(CityLights, AirBesideTheGlowOfCitiesIsRefused) {
   const std::string map = "file: m.pgm, local: {origin: [-20, 20], gsd: 10}",
-                    glow = "night_sky: {time_utc: 2026-03-20T22:00:00Z, city_glow: [{azimuth_deg: 90, spectrum: {lamp: "
-                           "sodium}, population: 1e5, distance_km: 20}]}\n";
+                    glow =
+                        "night_sky: {time_utc: 2026-03-20T22:00:00Z, city_glow: [{azimuth_deg: 90, spectrum: {lamp: "
+                        "sodium}, population: 1e5, distance_km: 20}]}\n";
   EXPECT_EQ(render(map, glow).code, 0);
   const CommandResult r = render(map, glow + "atmosphere: {}\n");
   EXPECT_NE(r.code, 0);
