@@ -3,7 +3,6 @@
 #include <array>
 
 #include "base/error.h"
-#include "base/registry.h"
 
 namespace suite {
 
@@ -125,13 +124,10 @@ std::string list_instrument_presets() {
   return list;
 }
 
-std::string instrument_preset(const std::string& name) {
-  std::vector<std::string> names;
-  for (const Preset& p : kPresets) {
+std::optional<std::string> find_instrument_preset(const std::string& name) {
+  for (const Preset& p : kPresets)
     if (p.name == name) return p.text;
-    names.emplace_back(p.name);
-  }
-  throw Error("there is no preset '" + name + "'", name_hint(name, names));
+  return std::nullopt;
 }
 
 }  // namespace suite

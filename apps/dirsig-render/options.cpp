@@ -85,12 +85,11 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.flag("--list-detectors", o.list_detectors, "print the kinds of detectors of --detect and stop");
   cli.flag("--list-image-detectors", o.list_image_detectors, "print the kinds of detectors of images and stop");
   cli.flag("--list-deflectors", o.list_deflectors, "print the kinds of scanners of laser radars and stop");
-  cli.flag("--list-presets", o.list_presets,
-           "print the imaging instruments that are known by published numbers and stop");
-  cli.option("--preset", o.preset,
-             "print one of them as a text for `sensors:`, with the sources of its numbers, and stop", "NAME");
   cli.flag("--lidar-presets", o.lidar_presets, "print the laser radars that are known by public numbers and stop");
   cli.option("--lidar-preset", o.lidar_preset,
+             "print one of them as a text for `sensors:`, with the sources of its numbers, and stop", "NAME");
+  cli.flag("--list-presets", o.list_presets, "print the sensors that are known by public numbers and stop");
+  cli.option("--preset", o.preset,
              "print one of them as a text for `sensors:`, with the sources of its numbers, and stop", "NAME");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");

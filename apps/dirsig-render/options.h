@@ -15,7 +15,7 @@ struct RenderOptions {
                                             convert;
   std::string view, view_size = "256MiB";  // page
   std::string detect;                      // stored responses of laser pulses
-  std::string lidar_preset, preset;        // names
+  std::string preset, lidar_preset;        // names
   std::string part, plan;                  // K/N; folder of a state of the whole
   std::vector<std::string> merge;          // folders of parts
   std::string study, study_budgets = "4,8,16,32,64", reference;

@@ -27,7 +27,6 @@
 #include "guard.h"
 #include "heat.h"
 #include "helios_survey.h"
-#include "instrument_presets.h"
 #include "lidar.h"
 #include "lidar_presets.h"
 #include "light/light_rows.h"
@@ -48,6 +47,7 @@
 #include "sensor/deflectors/deflector.h"
 #include "sensor/detectors/detectors.h"
 #include "sensor/plugin.h"
+#include "sensor_presets.h"
 #include "start.h"
 #include "stokes_checks.h"
 #include "study.h"
@@ -166,8 +166,8 @@ std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
   if (o.list_detectors) return print(lidar_detectors().list());
   if (o.list_image_detectors) return print(array_detectors().list());
   if (o.list_deflectors) return print(deflectors().list());
-  if (o.list_presets) return print(list_instrument_presets());
-  if (!o.preset.empty()) return print(instrument_preset(o.preset));
+  if (o.list_presets) return print(list_presets());
+  if (!o.preset.empty()) return print(sensor_preset(o.preset));
   if (o.lidar_presets) return print(list_lidar_presets());
   if (!o.lidar_preset.empty()) return print(lidar_preset(o.lidar_preset));
   if (o.list_truth) return print(truth_rows().list());

@@ -11,7 +11,9 @@
 #include "formats/raster/raster.h"
 #include "formats/sim_text/air.h"
 #include "formats/sim_text/air_tables.h"
+#include "formats/sim_text/lamp_map.h"
 #include "formats/sqt/sqt.h"
+#include "formats/star_catalogue/star_catalogue.h"
 #include "optics/phase_function.h"
 #include "spectral/lamp_spectra.h"
 
@@ -75,6 +77,13 @@ IntensityTable read_candela(const Params& file) {
   if (std::fabs(lost) > 1e-4)
     warn(strf("%s: on the even table of a lamp its lumens change by %+.2g %%", path.c_str(), 100 * lost));
   return table;
+}
+
+std::vector<CatalogueStar> read_stars(const Params& file) {
+  const std::string path = file.as_path();
+  if (!file_exists(path))
+    throw file.error("there is no star catalogue '" + path + "'", "'builtin', 'none', or a CSV file");
+  return read_star_catalogue(path);
 }
 
 ModelSpec read_phase(const Params& p) {
@@ -219,6 +228,8 @@ SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
                        read_intensity,
                        read_candela,
                        [&](const Params& p) { return read_lamp_schedule(p, motion); },
+                       read_lamp_map,
+                       read_stars,
                        date ? std::optional(SourceTime{date->as_text(), date->where()}) : std::nullopt,
                        &asked};
   for (const LightRow* key : light_keys()) {

@@ -9,8 +9,10 @@
 #include "base/params.h"
 #include "base/registry.h"
 #include "light/intensity_table.h"
+#include "light/lamp_map.h"
 #include "light/lamp_schedule.h"
 #include "light/light_spec.h"
+#include "light/night/stars.h"
 
 namespace suite {
 
@@ -38,6 +40,10 @@ struct LightContext {
   std::function<IntensityTable(const Params& path)> candela;
   // When a lamp is how bright.
   std::function<std::shared_ptr<const LampSchedule>(const Params&)> schedule;
+  // A raster that says how bright a surface is where, of its keys `file`, `local` and `no_data`.
+  std::function<std::shared_ptr<const LampMap>(const Params&)> lamp_map = {};
+  // Stars of a catalogue of the user.
+  std::function<std::vector<CatalogueStar>(const Params& path)> stars = {};
   std::optional<SourceTime> date = {};       // of second 0, where the text says it
   std::vector<AskedCurve>* asked = nullptr;  // receives the curves that were read
   size_t number = 1;                         // of the entry in its list

@@ -41,6 +41,7 @@ CelestialSphere::CelestialSphere(const SceneFrame& frame, JulianDate tt, JulianD
   const Vec3 on_ecliptic = ecliptic_.to_local(axes_.to_world(sun));
   sun_longitude_ = std::atan2(on_ecliptic.y, on_ecliptic.x);
   sun_distance_ = length(sun);
+  sun_ = sun + Vec3{barycentric[0][0], barycentric[0][1], barycentric[0][2]};
 
   eraXys06a(tt.day, tt.fraction, &x, &y, &locator);
   if (air) eraRefco(air->pressure * 1e-2, air->temperature - 273.15, air->humidity, air->wavelength_um, &a, &b);
@@ -53,6 +54,11 @@ CelestialSphere::CelestialSphere(const SceneFrame& frame, JulianDate tt, JulianD
             eraSp00(tt.day, tt.fraction), lifts ? a : 0, lifts ? b : 0, at);
   }
   observer_ = observer;
+}
+
+Vec3 CelestialSphere::observer_au() const {
+  const auto& eb = observer_->bare.eb;
+  return {eb[0], eb[1], eb[2]};
 }
 
 Dir CelestialSphere::without_air(const CatalogPlace& star) const { return seen_by(observer_->bare, star); }

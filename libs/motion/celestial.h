@@ -45,6 +45,9 @@ class CelestialSphere {
   // Ecliptic longitude of the Sun (rad), geometric but for light time, and its distance, au.
   double sun_longitude() const { return sun_longitude_; }
   double sun_distance_au() const { return sun_distance_; }
+  // The Sun and the observer from the centre of mass of the solar system, au, celestial axes.
+  Vec3 sun_au() const { return sun_; }
+  Vec3 observer_au() const;
 
   // The unit direction, in scene ENU, in which a star is seen: with proper motion, light deflection, aberration and,
   // with air, refraction (good above 10 degrees of height; what stands lower than 0.6 degrees below the horizon is not
@@ -59,6 +62,7 @@ class CelestialSphere {
   Frame axes_, ecliptic_;  // celestial and ecliptic axes in scene ENU
   Dir pole_{0, 0, 1};
   double sun_longitude_ = 0, sun_distance_ = 1;
+  Vec3 sun_;
 };
 
 }  // namespace suite

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 
 #include "base/interrupt.h"
 #include "light/far_points.h"
@@ -23,7 +25,11 @@ class PointsInView {
         polarimetry_(polarimetry),
         capture_(capture),
         result_(result),
-        projection_(primed.projection()) {}
+        projection_(primed.projection()),
+        star_column_(static_cast<size_t>(std::find(result.truth_names.begin(), result.truth_names.end(), "star") -
+                                         result.truth_names.begin())) {
+    if (star_column_ < result.truth_names.size()) marks_.assign(result.problems(), 0.0);
+  }
 
   void add(const FarPoints& all, uint16_t light, std::vector<SeenPoint>& seen) {
     Contribution direct;
@@ -51,7 +57,8 @@ class PointsInView {
 
   void add(const FarPoints& all, const FarPoint& point, std::vector<SeenPoint>& seen) {
     std::vector<double> above;
-    SeenPoint found{point.number, point.v, 0, 0, std::vector<double>(result_.bands, 0.0)};
+    given_.clear();
+    SeenPoint found{point.name, point.v, 0, 0, std::vector<double>(result_.bands, 0.0)};
     double weight = 0, time = -1;
     Vec3 origin;
     const auto direction_at = [&](double t) { return all.direction_at(point, t); };
@@ -67,6 +74,7 @@ class PointsInView {
     });
     if (!(weight > 0) || std::none_of(found.irradiance.begin(), found.irradiance.end(), [](double e) { return e > 0; }))
       return;
+    mark(seen.size() + 1);
     found.column /= weight, found.row /= weight;
     for (double& e : found.irradiance) e /= weight;
     seen.push_back(std::move(found));
@@ -107,6 +115,19 @@ class PointsInView {
     for (size_t c = 0; c < result_.channels; ++c)
       for (size_t b = 0; b < result_.bands; ++b) row[c * result_.bins * result_.bands + b] += shares_[c] * sums_[b];
     for (size_t b = 0; b < result_.bands; ++b) found.irradiance[b] += sums_[b];
+    if (!marks_.empty()) given_[s.problem] += std::accumulate(sums_.begin(), sums_.end(), 0.0);
+  }
+
+  // Pixels that the point gives more of than others do, where it leaves a share of its light that is worth the name.
+  void mark(size_t row) {
+    constexpr double kLeast = 0.01;
+    double whole = 0;
+    for (const auto& [problem, light] : given_) whole += light;
+    for (const auto& [problem, light] : given_) {
+      if (!(light >= kLeast * whole && light > marks_[problem])) continue;
+      marks_[problem] = light;
+      result_.truth[problem * result_.truth_names.size() + star_column_] = static_cast<double>(row);
+    }
   }
 
   const Primed& primed_;
@@ -119,6 +140,9 @@ class PointsInView {
   std::vector<double> arriving_;  // W/(m2 um), per bin
   std::vector<float> per_bin_;
   std::vector<double> sums_;
+  const size_t star_column_;        // of the truth
+  std::vector<double> marks_;       // most light that a point gives, by problem; empty: nobody asks
+  std::map<size_t, double> given_;  // by problem, of the point at hand
 };
 
 }  // namespace

@@ -23,13 +23,13 @@ TrailSteps::TrailSteps(const TimeWindow& w, const std::function<std::optional<Ve
 
 std::string points_table(std::span<const SeenPoint> points, std::span<const Band> bands) {
   std::string text =
-      "# stars: number in the catalogue, magnitude, centre of its light in pixels, irradiance at the sensor in W/(m2 "
+      "# stars: name in the catalogue, magnitude, centre of its light in pixels, irradiance at the sensor in W/(m2 "
       "um)\n"
-      "number,v_mag,column,row";
+      "name,v_mag,column,row";
   for (const Band& band : bands) text += "," + band.name;
   text += "\n";
   for (const SeenPoint& p : points) {
-    text += strf("%d,%.2f,%.4f,%.4f", p.number, p.v, p.column, p.row);
+    text += strf("%s,%.2f,%.4f,%.4f", p.name.c_str(), p.v, p.column, p.row);
     for (size_t b = 0; b < bands.size(); ++b) text += strf(",%.6g", p.irradiance.at(b));
     text += "\n";
   }

@@ -22,7 +22,7 @@ struct PointShare {
 
 // A point as it was seen in a capture.
 struct SeenPoint {
-  int number = 0;
+  std::string name;
   double v = 0, column = 0, row = 0;  // magnitude; centre of its light, in pixels from the picture's upper left corner
   std::vector<double> irradiance;  // W/(m2 um) at the sensor, of each band: through the air, and where nothing hides it
 };

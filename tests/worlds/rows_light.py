@@ -70,7 +70,7 @@ def night_sky(d):
     """As bright as lamps; its stars spread, for sensors differ in which of them see stars as points."""
     scale = d.u(1e5, 4e5)
     d.world.sim["night_sky"] = {"time_utc": "2026-03-20T23:00:00Z", "place": {"latitude_deg": d.u(-70, 70), "longitude_deg": d.u(-170, 170)}, "resolve_stars": "none",
-                                "scale": {part: round(scale * d.u(0.2, 1)) for part in ("zodiacal", "airglow", "starlight", "galactic", "stars")}}
+                                "scale": {part: round(scale * d.u(0.2, 1)) for part in ("zodiacal", "airglow", "starlight", "galactic", "stars", "planets")}}
 
 
 def sky_furnace(d):

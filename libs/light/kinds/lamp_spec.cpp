@@ -58,11 +58,32 @@ LampSpec named_lamp(LampSpec::Kind kind, const Params& p, const LightContext& co
   return lamp;
 }
 
+// The spectrum, on whatever scale, of a unit of a map that holds radiance in a band.
+Curve of_a_map(const Curve& spectrum, const Params& p, const Params& map) {
+  std::vector<double> band{0.5, 0.9};
+  const auto given = map.find("band_um");
+  if (given) band = given->as_numbers();
+  if (band.size() != 2 || !(band[0] >= 0.1 && band[0] < band[1] && band[1] <= 100))
+    throw given->error("a band is two wavelengths, the lower one first", "as in [0.5, 0.9]");
+  const double unit = map.number_in("scale", 1e-30, 1e30, "W/(m2 sr) of a unit of the map", 1e-5);
+  if (!spectrum.covers(band[0], band[1]))
+    throw p.error("the spectrum reaches from " + spectrum.range_text() +
+                      strf(", and the map's band from %g to %g um", band[0], band[1]),
+                  "give a longer curve, or declare 'outside: hold' or 'zero'");
+  const double in_band = spectrum.mean(band[0], band[1]) * (band[1] - band[0]);
+  if (!(in_band > 0)) throw p.error("has no light in the map's band");
+  return spectrum.scaled(unit / in_band);
+}
+
 LightSpecPtr read_surface(const Params& p, const LightContext& context) {
   LampSpec lamp = named_lamp(LampSpec::Kind::surface, p, context);
   lamp.material = p.text("material");
   lamp.radiance = context.positive(p.at("radiance"), "radiance", "W/(m2 sr um)");
   lamp.both_sides = p.boolean("both_sides", false);
+  if (const auto map = p.find("map")) {
+    lamp.map = context.lamp_map(*map);
+    lamp.radiance = of_a_map(lamp.radiance, p.at("radiance"), *map);
+  }
   return make_light(std::move(lamp));
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "light/earth.h"
 #include "light/kinds/lamp_intensity.h"
 #include "light/kinds/lamps_core.h"
 
@@ -43,6 +44,20 @@ uint32_t Lamps::Core::shape_at(const Hit& hit) const {
   const auto copy = copy_of.find(hit.object);
   const auto shapes_of = shape_of_triangle.find(copy == copy_of.end() ? hit.object : copy->second.first);
   return shapes_of == shape_of_triangle.end() ? kNone : shapes_of->second[hit.triangle];
+}
+
+void Lamps::Core::add_map(const LampSpec& s, const Scene& scene) {
+  maps.emplace_back();
+  if (!s.map) return;
+  if (cell) throw Error(s.where, "lamp '" + s.name + "': a map lies over a scene that repeats itself");
+  std::optional<SceneFrame> frame;
+  if (s.map->system) frame = frame_of(scene, s.where, "the map of a lamp");
+  maps.back() = std::make_unique<const PlacedLampMap>(s.map, frame);
+}
+
+double Lamps::Core::brightness(uint32_t spec, Vec3 place, double time) const {
+  const double dimmed = dimming(specs[spec], time);
+  return maps[spec] && dimmed > 0 ? dimmed * maps[spec]->at(place) : dimmed;
 }
 
 Lamps::~Lamps() = default;
@@ -133,6 +148,9 @@ uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec,
   if (!shape) return kNone;
   shape->spec = spec;
   shape->both_sides = specs[spec].both_sides;
+  LightBounds b = bounds_of(*shape);
+  if (maps[spec]) b.power *= maps[spec]->mean_over(b.box);
+  if (!(b.power > 0)) return kNone;
   // The tracer knows how far off the surface visibility rays must end: ask it for the surface's middle.
   const Kind kind = shape->kind;
   const Dir n = kind == Kind::sphere ? Dir{0, 0, 1} : shape->normal;
@@ -152,7 +170,7 @@ uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec,
   else
     shape->step =
         static_cast<float>(std::min(double{hit.step}, Tracer::arrive(1e-14 * length(place), infinite, 2 * extent)));
-  return add(*shape, bounds_of(*shape));
+  return add(*shape, b);
 }
 
 // Glowing geometry at rest; what moves is met by chance.
@@ -211,6 +229,7 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
     const bool surface = s.kind == LampSpec::Kind::surface;
     check(s);
     core.spectra.push_back(state.sample(surface ? s.radiance : s.intensity));
+    core.add_map(s, tracer.scene());
     core.frames.push_back(Frame::with_tangent(normalized(s.axis), {1, 0, 0}));
     if (surface)
       core.add_material(i, tracer.scene());
@@ -239,7 +258,7 @@ std::optional<LightMet> Lamps::met_surface(const LightReceiver& from, const Hit&
                                            double distance, double cosine, double time) const {
   const float* const spectrum = glow(material, cosine > 0);
   if (!spectrum) return std::nullopt;
-  const double dimmed = dimming(core_->specs[core_->spec_of_material[material]], time);
+  const double dimmed = core_->brightness(core_->spec_of_material[material], hit.position, time);
   if (!(dimmed > 0)) return std::nullopt;
   return LightMet{dimmed, spectrum, density(from, hit, direction, distance, cosine)};
 }
@@ -312,7 +331,8 @@ std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability,
   r.direction = point->direction;
   r.distance = point->distance;
   r.density = point->density * probability;
-  r.scale = dimmed;
+  r.scale = core_->brightness(s.spec, point->position, time);
+  if (!(r.scale > 0)) return std::nullopt;
   const double step = Tracer::arrive(double{s.step}, double{s.span}, r.distance);
   r.end = point->position + point->normal * (point->cosine > 0 ? step : -step);
   return r;

@@ -5,10 +5,11 @@
 // schedule switches and dims lamps in time; rays find them as they are at their time.
 //
 // Assumes: points are seen by nothing but the explicit sample; glowing surfaces glow equally in all directions of their
-// side. Glowing triangles, disks, boxes, bounded planes and spheres are drawn; other exact surfaces that glow are met
-// by chance only. In a scene that repeats itself every lamp stands in every cell: an image of the cell is drawn first
-// (lamp_images.h), then one of its lamps. Based on: Pharr, Jakob & Humphreys, "Physically based rendering", 4th ed.
-// 2023, chapter 12; cones towards spheres after section 6.2.4 there.
+// side, those with a map as bright as it says where they are. Glowing triangles, disks, boxes, bounded planes and
+// spheres are drawn; other exact surfaces that glow are met by chance only. In a scene that repeats itself every lamp
+// stands in every cell: an image of the cell is drawn first (lamp_images.h), then one of its lamps. Based on: Pharr,
+// Jakob & Humphreys, "Physically based rendering", 4th ed. 2023, chapter 12; cones towards spheres after section 6.2.4
+// there.
 #pragma once
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "light/intensity_table.h"
+#include "light/lamp_map.h"
 #include "light/lamp_schedule.h"
 #include "light/light_spec.h"
 #include "light/light_tree.h"
@@ -38,8 +40,9 @@ struct LampSpec {
   std::shared_ptr<const IntensityTable> table;
   // surface: everything with this material glows, on top of what it scatters and emits as a warm body
   std::string material;
-  Curve radiance;           // W/(m2 sr um)
-  bool both_sides = false;  // else the front only
+  Curve radiance;                           // W/(m2 sr um)
+  bool both_sides = false;                  // else the front only
+  std::shared_ptr<const LampMap> map = {};  // times the radiance, by place; null = alike everywhere
 };
 
 // All lamps of an environment become one light.
@@ -50,8 +53,8 @@ LightSpecPtr make_light(std::vector<LampSpec> lamps);
 class Lamps final : public Light {
  public:
   // Error: unknown or mapped material, negative spectra, cones that are not 0 <= inner <= outer <= pi, empty or
-  // negative tables; a lamp that rides on what the scene does not place, or what LampCarriers refuses, or in a scene
-  // that repeats itself.
+  // negative tables; a map in a scene without an origin or one that repeats itself; a lamp that rides on what the scene
+  // does not place, or what LampCarriers refuses, or in a scene that repeats itself.
   Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state);
   ~Lamps();
   // u: the choice of the lamp, two for the place on it, and one for the choice among its images, unused where the scene

@@ -11,9 +11,10 @@ namespace suite {
 
 struct Lamps::Core {
   std::vector<LampSpec> specs;
-  std::vector<Frame> frames;                // of the specs
-  std::vector<std::vector<float>> spectra;  // of the specs
-  std::vector<LampShape> shapes;            // as numbered in the tree
+  std::vector<Frame> frames;                               // of the specs
+  std::vector<std::vector<float>> spectra;                 // of the specs
+  std::vector<std::unique_ptr<const PlacedLampMap>> maps;  // of the specs; null = none
+  std::vector<LampShape> shapes;                           // as numbered in the tree
   std::unique_ptr<LightTree> tree;
   // Per object: the shapes of its triangles, kNone = does not glow or is not in the tree; one entry for exact surfaces.
   std::unordered_map<uint32_t, std::vector<uint32_t>> shape_of_triangle;
@@ -37,6 +38,9 @@ struct Lamps::Core {
   void add_surfaces(const Tracer& tracer);
   uint32_t add(const LampShape& shape, LightBounds b);
   uint32_t shape_at(const Hit& hit) const;
+  void add_map(const LampSpec& spec, const Scene& scene);
+  // Of the light of a spec at a place; 0 = it is dark there and then.
+  double brightness(uint32_t spec, Vec3 place, double time) const;
   uint32_t add_surface(std::optional<LampShape> shape, uint32_t spec, const Hit& middle, const Tracer& tracer);
 };
 

@@ -10,6 +10,7 @@
 #include "light/kinds/rows.h"
 #include "light/kinds/sky.h"
 #include "motion/ut1.h"
+#include "spectral/photopic.h"
 
 namespace suite {
 
@@ -45,7 +46,7 @@ class NightSky final : public Light {
     add(d, scale, radiance, map_->components().size());
   }
   void add_without_points(Dir d, double, float scale, std::span<float> radiance) const override {
-    add(d, scale, radiance, points_ ? map_->first_star() : map_->components().size());
+    add(d, scale, radiance, points_ ? map_->first_point() : map_->components().size());
   }
   const FarPoints* points() const override { return points_.get(); }
   size_t members() const override { return 0; }
@@ -55,7 +56,7 @@ class NightSky final : public Light {
   }
 
  private:
-  static constexpr size_t kMost = 32;  // components
+  static constexpr size_t kMost = 64;  // components
 
   // Of the first components.
   void add(Dir d, float scale, std::span<float> radiance, size_t count) const {
@@ -123,7 +124,8 @@ LightSpectra spectra_of(const NightMap& map) {
   const std::vector<double> plane = map.integrals().plane;
   for (size_t i = 0; i < components.size(); ++i) {
     const bool red = i == 1 && components[1].part == NightPart::zodiacal;
-    if (red) continue;
+    const bool set = plane[i] <= 0;
+    if (red || set) continue;
     seen.names.push_back(strf("the night sky, %s %zu", name_of(components[i].part).c_str(), i));
     all.push_back(components[i].spectrum);
     bright.push_back(static_cast<float>(std::max(0.0, plane[i]) / kPi));
@@ -148,6 +150,7 @@ class NightSkyLight final : public LightSpec {
     JulianDate tt, ut1;
     double seconds;
     std::shared_ptr<const NightMap> map;
+    std::vector<SeenPlanet> planets;
     bool media;                                    // in the scene: real air is then no field that knows it
     std::shared_ptr<const FarPoints> points = {};  // not before it has settled
     bool settled = false;
@@ -162,16 +165,22 @@ class NightSkyLight final : public LightSpec {
     const SceneFrame frame =
         spec_.place ? SceneFrame(*spec_.place) : frame_of(at.scene, spec_.time.where, "a night sky");
     const Instant epoch = instant_of(spec_.time), instant = epoch + at.seconds;
-    Now now{frame,   julian_tt(instant),     julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds,
-            nullptr, !at.scene.media.empty()};
-    now.map = std::make_shared<const NightMap>(spec_, CelestialSphere(frame, now.tt, now.ut1));
+    Now now{frame, julian_tt(instant),     julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds, nullptr,
+            {},    !at.scene.media.empty()};
+    const CelestialSphere sphere(frame, now.tt, now.ut1);
+    now.planets = seen_planets(sphere, now.tt);
+    now.map = std::make_shared<const NightMap>(spec_, sphere, now.planets);
     at.said.push_back(sentence_of(*now.map, instant));
     return std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
 
-  // Air lifts the stars; where paths are scattered in it, nobody knows what it leaves of one.
+  // Air lifts the stars; it would dim a second time what cities make of it; where paths are scattered in it, nobody
+  // knows what it leaves of one.
   void settle(SourceSpecs& all, size_t own, std::vector<std::string>& said) const override {
     if (now_->settled) return;
+    if (!spec_.glows.empty() && all.has_air())
+      throw Error(all.where_air(), "city_glow is the light of air itself, and the simulation's air would dim it again",
+                  "leave out the air or city_glow; in traced air lamps make their own glow");
     Now now = *now_;
     now.settled = true;
     const bool traced = all.air && all.air->scattering == AirScattering::traced;
@@ -180,15 +189,16 @@ class NightSkyLight final : public LightSpec {
       said.push_back(
           "night sky: the air dims it, and what it scatters of it is left out (real air with 'scattering: diffuse' and "
           "adjacency, without media, has it)");
-    const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
-    const bool points = spec_.catalogue && spec_.in_view && scale > 0;
+    const bool points =
+        spec_.in_view && ((spec_.catalogue && scale(NightPart::stars) > 0) || scale(NightPart::planets) > 0);
     if (points && (traced || now.media))
       said.push_back(
-          "night sky: under `scattering: traced`, or with media in the scene, its stars are spread over cells of 3 "
+          "night sky: under `scattering: traced`, or with media in the scene, its stars and planets are spread over "
+          "cells of 3 "
           "degrees, in views as well");
     if (points && !traced && !now.media)
       now.points =
-          std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all)), scale));
+          std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all))));
     all.lights[own] = std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
 
@@ -216,14 +226,19 @@ class NightSkyLight final : public LightSpec {
     }
     return air;
   }
-  FarPoints points_of(const CelestialSphere& sphere, double scale) const {
+  double scale(NightPart part) const { return spec_.scale[static_cast<size_t>(part)]; }
+  FarPoints points_of(const CelestialSphere& sphere) const {
     FarPoints all;
     all.pole = sphere.pole();
     all.seconds = now_->seconds;
-    all.scale = scale;
-    for (const CatalogueStar& s : *spec_.catalogue)
-      if (s.v <= spec_.faintest)
-        all.points.push_back({s.number, s.v, star_temperature(s.colour), sphere.seen(s.place)});
+    if (const double s = scale(NightPart::stars); spec_.catalogue && s > 0)
+      for (const CatalogueStar& star : *spec_.catalogue)
+        if (star.v <= spec_.faintest)
+          all.points.push_back({star.name, star.v, s, star.kelvin, {}, sphere.seen(star.place)});
+    if (const double s = scale(NightPart::planets); s > 0)
+      for (const SeenPlanet& p : now_->planets)
+        all.points.push_back({name_of(p.planet), p.v, s, 0, std::make_shared<const Curve>(planet_shape(p.planet)),
+                              sphere.seen(p.place)});
     return all;
   }
   static std::string sentence_of(const NightMap& map, Instant instant) {
@@ -264,6 +279,51 @@ void read_parts(const Params& p, NightSkySpec& sky) {
   }
 }
 
+void read_catalogue(const Params& p, const LightContext& context, NightSkySpec& sky) {
+  const auto catalogue = p.find("catalogue");
+  const std::string which = catalogue ? catalogue->as_text() : "builtin";
+  if (which == "builtin") {
+    sky.catalogue = {std::shared_ptr<void>(), &bright_star_catalogue()};
+  } else if (which != "none") {
+    sky.catalogue = std::make_shared<const std::vector<CatalogueStar>>(context.stars(*catalogue));
+    sky.faintest = 40;
+  }
+}
+
+CityGlow read_glow(const Params& p, const LightContext& context) {
+  CityGlow glow;
+  glow.azimuth = azimuth_from_compass_deg(p.number_in("azimuth_deg", -360, 360, "degrees, compass"));
+  glow.width = p.number_in("width_deg", 1, 360, "degrees", 20) * kDegree;
+  glow.height = p.number_in("height_deg", 1, 360, "degrees", 15) * kDegree;
+  const Params given = p.at("spectrum");
+  const Curve spectrum = context.positive(given, "spectrum", "any unit");
+  if (!spectrum.covers(0.38, 0.78))
+    throw given.error("the spectrum reaches from " + spectrum.range_text() + ", not from 0.38 to 0.78 um",
+                      "give a longer curve, or declare 'outside: hold' or 'zero'");
+  const double lumens = photopic(spectrum);
+  if (!(lumens > 0)) throw given.error("has no light that the eye sees, by which a glow is given");
+  const auto people = p.find("population");
+  if (!people == !p.has("horizon_cd_m2")) throw p.error("a glow has either 'horizon_cd_m2' or 'population'");
+  double luminance = 0;
+  if (people) {
+    luminance = walker_luminance(people->as_number_in(100, 1e8, "people"),
+                                 p.at("distance_km").as_number_in(5, 100, "km, where Walker's law means something")) *
+                std::exp(45 * kDegree / glow.height);
+  } else {
+    luminance = p.number_in("horizon_cd_m2", 0, 1e4, "cd/m2");
+  }
+  glow.horizon = spectrum.scaled(luminance / lumens);
+  return glow;
+}
+
+void read_glows(const Params& p, const LightContext& context, NightSkySpec& sky) {
+  constexpr size_t kMostGlows = 32;
+  const auto list = p.find("city_glow");
+  if (!list) return;
+  for (const Params& one : list->items()) sky.glows.push_back(read_glow(one, context));
+  if (sky.glows.size() > kMostGlows) throw list->error(strf("more than %zu glows", kMostGlows));
+}
+
 SourceTime time_of(const Params& p, const LightContext& context) {
   if (const auto time = p.find("time_utc")) {
     SourceTime given{time->as_text(), time->where()};
@@ -283,10 +343,9 @@ LightSpecPtr read_night_sky(const Params& p, const LightContext& context) {
                          place->number_in("longitude_deg", -180, 360, "degrees"),
                          place->number_in("height_m", -1000, 20000, "m above WGS84", 0)};
   }
-  const auto catalogue = p.find("catalogue");
-  if (!catalogue || catalogue->as_choice({"builtin", "none"}) == 0)
-    sky.catalogue = {std::shared_ptr<void>(), &bright_star_catalogue()};
-  sky.faintest = p.number_in("stars_to_mag", -2, 20, "mag", sky.faintest);
+  read_catalogue(p, context, sky);
+  read_glows(p, context, sky);
+  sky.faintest = p.number_in("stars_to_mag", -2, 40, "mag", sky.faintest);
   if (const auto resolve = p.find("resolve_stars")) sky.in_view = resolve->as_choice({"in_view", "none"}) == 0;
   sky.solar_flux = p.number_in("solar_flux_sfu", 50, 400, "sfu", sky.solar_flux);
   return make_light(std::move(sky));
@@ -310,7 +369,7 @@ LightSpecPtr make_light(NightSkyLightSpec spec) { return std::make_shared<const 
 LightRow night_sky_row() {
   return {
       {"night_sky",
-       "natural night sky by place and date: zodiacal light, airglow, starlight, 9096 stars (0.3 to 2.5 um)",
+       "natural night sky by place and date: zodiacal light, airglow, starlight, 9096 stars, planets (0.3 to 2.5 um)",
        "W/(m2 sr um)", read_night_sky},
       false,
       "The sky by night. A sample of it at every node, with a visibility ray; zodiacal light, airglow and stars are "

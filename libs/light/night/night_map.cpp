@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kTemperatures[] = {2500, 3500, 4500, 5500, 7000, 10000, 20000};  // K, of the colours
 constexpr size_t kRows = 45, kColumns = 90;                                       // cells, of equal solid angle
+constexpr double kCell = 4 * kPi / (kRows * kColumns);                            // sr
 constexpr double kGalactic = 0.2, kExtragalactic = 1.5;                           // of starlight; S10
 
 // Shares of two neighbouring colours, linear in 1 / T.
@@ -27,12 +28,23 @@ std::pair<size_t, double> between(double kelvin) {
 }  // namespace
 
 std::string name_of(NightPart part) {
-  constexpr const char* kNames[] = {"zodiacal", "airglow", "starlight", "galactic", "stars"};
+  constexpr const char* kNames[] = {"zodiacal", "airglow", "starlight", "galactic", "stars", "planets", "city_glow"};
   static_assert(std::size(kNames) == kNightParts);
   return kNames[static_cast<size_t>(part)];
 }
 
-NightMap::NightMap(const NightSkySpec& spec, const CelestialSphere& sphere)
+std::vector<SeenPlanet> seen_planets(const CelestialSphere& sphere, JulianDate tt) {
+  std::vector<SeenPlanet> all;
+  const double year = 2000 + (tt.day + tt.fraction - 2451545) / 365.25;
+  for (size_t i = 0; i < kPlanets; ++i) {
+    const auto planet = static_cast<Planet>(i);
+    const PlanetPlace place = planet_place(planet, sphere, tt);
+    all.push_back({planet, place.place, planet_magnitude(planet, view_of(planet, place, year))});
+  }
+  return all;
+}
+
+NightMap::NightMap(const NightSkySpec& spec, const CelestialSphere& sphere, std::span<const SeenPlanet> planets)
     : sphere_(sphere), galactic_pole_(sphere.to_scene(galactic_pole())) {
   const auto scale = [&](NightPart p) { return spec.scale[static_cast<size_t>(p)]; };
   const auto add = [&](NightPart part, const GlowSpectrum& spectrum, double of_part) {
@@ -56,21 +68,36 @@ NightMap::NightMap(const NightSkySpec& spec, const CelestialSphere& sphere)
   if (const double s = scale(NightPart::starlight); s > 0) add(NightPart::starlight, s10, s);
   first_.galactic = components_.size();
   if (const double s = scale(NightPart::galactic); s > 0) add(NightPart::galactic, s10, s);
+  first_.glow = components_.size();
+  if (const double s = scale(NightPart::city_glow); s > 0)
+    for (const CityGlow& glow : spec.glows) {
+      glows_.push_back(glow);
+      add(NightPart::city_glow, {glow.horizon}, s);
+    }
   first_.stars = components_.size();
   if (spec.catalogue) add_stars(spec, sphere);
+  first_.planets = components_.size();
+  if (const double s = scale(NightPart::planets); s > 0) add_planets(s, planets);
+}
+
+void NightMap::add_planets(double scale, std::span<const SeenPlanet> planets) {
+  for (const SeenPlanet& p : planets) {
+    const Dir d = sphere_.to_celestial(sphere_.without_air(p.place));
+    planets_.push_back({cell_of(d), flux_of(p.v) / kCell});
+    components_.push_back({NightPart::planets, {planet_shape(p.planet).scaled(kVegaIrradiance * scale)}});
+  }
 }
 
 void NightMap::add_stars(const NightSkySpec& spec, const CelestialSphere& sphere) {
   const double s = spec.scale[static_cast<size_t>(NightPart::stars)];
   double sum = 0;
   if (s > 0) cells_.resize(kRows * kColumns);
-  constexpr double kCell = 4 * kPi / (kRows * kColumns);
   for (const CatalogueStar& star : *spec.catalogue) {
     if (star.v > spec.faintest) continue;
     const double flux = flux_of(star.v);
     sum += flux;
     if (!(s > 0)) continue;
-    const auto [i, t] = between(star_temperature(star.colour));
+    const auto [i, t] = between(star.kelvin);
     auto& cell = cells_[cell_of(sphere.to_celestial(sphere.without_air(star.place)))];
     cell[i] += static_cast<float>((1 - t) * flux / kCell);
     cell[i + 1] += static_cast<float>(t * flux / kCell);
@@ -106,10 +133,13 @@ void NightMap::weights(Dir d, std::span<double> w) const {
         i > 0 && heights_[i] == heights_[i - 1] ? w[first_.airglow + i - 1] : van_rhijn(sine, heights_[i]);
   const double stars = starlight_s10(dot(d, galactic_pole_));
   if (first_.galactic > first_.starlight) w[first_.starlight] = unresolved_ * stars;
-  if (first_.stars > first_.galactic) w[first_.galactic] = kGalactic * stars + kExtragalactic;
-  if (cells_.empty()) return;
-  const auto& cell = cells_[cell_of(sphere_.to_celestial(d))];
-  std::copy(cell.begin(), cell.end(), w.begin() + static_cast<ptrdiff_t>(first_.stars));
+  if (first_.glow > first_.galactic) w[first_.galactic] = kGalactic * stars + kExtragalactic;
+  for (size_t i = 0; i < glows_.size(); ++i) w[first_.glow + i] = relative_glow(glows_[i], d);
+  if (cells_.empty() && planets_.empty()) return;
+  const size_t at = cell_of(sphere_.to_celestial(d));
+  if (!cells_.empty())
+    std::copy(cells_[at].begin(), cells_[at].end(), w.begin() + static_cast<ptrdiff_t>(first_.stars));
+  for (size_t i = 0; i < planets_.size(); ++i) w[first_.planets + i] = planets_[i].cell == at ? planets_[i].weight : 0;
 }
 
 NightMap::Integrals NightMap::integrals() const {

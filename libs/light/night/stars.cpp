@@ -24,10 +24,10 @@ const std::vector<CatalogueStar>& bright_star_catalogue() {
     stars.reserve(kCount);
     constexpr double kPlace = 1e-5 * kDegree, kMotion = 1e-3 / 3600 * kDegree;
     for (const int* s = kStars; s != std::end(kStars); s += kFields)
-      stars.push_back({s[0],
+      stars.push_back({std::to_string(s[0]),
                        {s[1] * kPlace, s[2] * kPlace, s[5] * kMotion / std::cos(s[2] * kPlace), s[6] * kMotion},
                        0.01 * s[3],
-                       0.01 * s[4]});
+                       star_temperature(0.01 * s[4])});
     return stars;
   }();
   return all;

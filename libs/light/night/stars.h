@@ -6,7 +6,7 @@
 // equation 14 (temperature of B-V); M. S. Bessell et al., Astron. Astrophys. 333, 1998 (V = 0: 3.631e-8 W/(m2 um)); F.
 // E. Roach & L. R. Megill, Astrophys. J. 133, 1961 (all stars are as bright as 1092 of V = 1).
 #pragma once
-#include <span>
+#include <string>
 #include <vector>
 
 #include "motion/celestial.h"
@@ -15,12 +15,12 @@
 namespace suite {
 
 struct CatalogueStar {
-  int number = 0;  // HR
+  std::string name;
   CatalogPlace place;
-  double v = 0, colour = 0;  // magnitude V, B-V
+  double v = 0, kelvin = 0;  // magnitude V
 };
 
-// 9096 stars to V = 7.96, complete to about 6.5.
+// 9096 stars to V = 7.96, complete to about 6.5; their names are numbers (HR).
 const std::vector<CatalogueStar>& bright_star_catalogue();
 
 // W/(m2 um) at 0.55 um of a star of V = 0, above the air.

@@ -39,6 +39,14 @@ void add_account_rows(std::vector<TruthRow>& table) {
                            if (n.hits > 0 && x.environment.towards_sun()) v[0] = sum[0] / n.hits;
                          });
                    }});
+  // Whoever puts far points into the picture fills it in (scheduler/points_in_view.h).
+  table.push_back({"star",
+                   "row in the table of stars of the one that gives most light to the pixel, of those that put 1 % of "
+                   "their light into it; 0 where there is none",
+                   "", [](const TruthContext& c) {
+                     return one<0>(c, "star", nothing,
+                                   [](const TruthContext&, const double*, const TruthCounts&, double* v) { v[0] = 0; });
+                   }});
   table.push_back({"state", "number of the spectral state", "", [](const TruthContext& c) {
                      return one<0>(c, "spectral state", nothing,
                                    [](const TruthContext& x, const double*, const TruthCounts&, double* v) {

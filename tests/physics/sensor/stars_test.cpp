@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "light/kinds/night_sky.h"
@@ -15,8 +16,8 @@ using test::PlatformKit;
 
 constexpr Geodetic kPlace{49.4, 8.7, 120};
 constexpr const char* kUtc = "2026-03-20T22:00:00Z";
-constexpr CatalogueStar kStar{1, {1.9, 0.7, 0, 0}, 3.0, 0.6};  // high in the west
-constexpr double kStep = 1e-4;                                 // rad, of a pixel on the axis: 10 um at 100 mm
+const CatalogueStar kStar{"1", {1.9, 0.7, 0, 0}, 3.0, 6000};  // high in the west
+constexpr double kStep = 1e-4;                                // rad, of a pixel on the axis: 10 um at 100 mm
 
 CelestialSphere sphere() {
   const Instant t = instant_from_utc(parse_iso8601(kUtc));
@@ -35,7 +36,7 @@ SourceSpecs stars_alone(std::vector<CatalogueStar> stars) {
 // In the band of 0.55 um, above the air, W/(m2 um): Planck over the band, by the trapezoidal rule.
 double above(const CatalogueStar& star) {
   double sum = 0;
-  const Curve shape = star_shape(star_temperature(star.colour));
+  const Curve shape = star_shape(star.kelvin);
   for (int i = 0; i < 100; ++i) sum += shape.at(0.545 + (i + 0.5) * 1e-4) / 100;
   return kVegaIrradiance * flux_of(star.v) * sum;
 }
@@ -95,6 +96,50 @@ TEST(Stars, FrameCameraKeepsTheirEnergyAndPlace) {
     EXPECT_NEAR(std::hypot(seen[0].column - 100, seen[0].row - 100), std::hypot(std::tan(right), std::tan(up)) / kStep,
                 0.8);
   }
+}
+
+// Jupiter, high in the west that evening: listed by its name where the theory has it, as bright as a star of its
+// magnitude and colour, and dark when the part is not asked for.
+TEST(Stars, PlanetsAreOnTheFocalPlaneToo) {
+  const Instant t = instant_from_utc(parse_iso8601(kUtc));
+  const SeenPlanet jupiter = seen_planets(sphere(), julian_tt(t))[static_cast<size_t>(Planet::jupiter)];
+  const Dir place = sphere().without_air(jupiter.place);
+  ASSERT_GT(place.z, 0.5);
+  NightSkyLightSpec night;
+  night.scale = {0, 0, 0, 0, 0, 2};
+  night.time.utc = kUtc;
+  night.place = kPlace;
+  SourceSpecs sources;
+  sources.add(night);
+  PlatformKit kit;
+  kit.render(ground(), sources, camera(place, 0, 0));
+  const double expected = 2 * kVegaIrradiance * flux_of(jupiter.v) * planet_shape(Planet::jupiter).mean(0.545, 0.555);
+  EXPECT_NEAR(energy(kit.shots[0], 1e4) / expected, 1, 1e-4);
+  bool listed = false;
+  for (const TextFile& text : kit.shots[0].texts) listed |= text.text.find("\njupiter,-2.") != std::string::npos;
+  EXPECT_TRUE(listed);
+  kit.render(ground(), stars_alone({}), camera(place, 0, 0));
+  EXPECT_EQ(energy(kit.shots[1], 1e4), 0);
+}
+
+// The truth `star` says which row of the table lit a pixel most; the second star of two in one pixel is not named, and
+// pixels between them hold none.
+TEST(Stars, TruthNamesThem) {
+  const Dir star = sphere().without_air(kStar.place);
+  CatalogueStar faint = kStar, apart = kStar;
+  faint.name = "faint", faint.v = 6;
+  apart.name = "apart", apart.v = 6, apart.place.declination += 30 * kStep;
+  PlatformKit kit;
+  kit.render(ground(), stars_alone({faint, kStar, apart}), camera(star, 0, 0, "truth: [star]\n"));
+  const CaptureResult& r = kit.shots[0].result;
+  ASSERT_EQ(r.truth_names, std::vector<std::string>{"star"});
+  std::map<int, int> pixels;
+  for (const double row : r.truth) ++pixels[static_cast<int>(row)];
+  EXPECT_EQ(pixels, (std::map<int, int>{{0, 40000 - 2}, {2, 1}, {3, 1}}));
+  size_t brightest = 0;
+  for (size_t i = 0; i < r.problems(); ++i)
+    if (r.radiance[i * r.values_per_problem()] > r.radiance[brightest * r.values_per_problem()]) brightest = i;
+  EXPECT_EQ(r.truth[brightest], 2);
 }
 
 // Starlight is unpolarised: half of it passes a polarizer, as Q and U of the light behind say, and none shows without.

@@ -145,6 +145,16 @@ const BadCase kBad[] = {
     {"{epoch: 2026-02-03T20:00:00Z, night_sky: {place: {latitude_deg: 95, longitude_deg: 0}}}", "95"},
     {"{epoch: 2026-02-03T20:00:00Z, night_sky: {place: {latitude_deg: 5}}}", "longitude_deg"},
     {"{epoch: 2026-02-03T20:00:00Z, night_sky: {catalogue: gaia}}", "builtin"},
+    {"{epoch: 2026-02-03T20:00:00Z, night_sky: {city_glow: [{azimuth_deg: 0, spectrum: {lamp: neon}, horizon_cd_m2: "
+     "1}]}}",
+     "neon"},
+    {"{epoch: 2026-02-03T20:00:00Z, night_sky: {city_glow: [{azimuth_deg: 0, spectrum: 1}]}}", "horizon_cd_m2"},
+    {"{epoch: 2026-02-03T20:00:00Z, night_sky: {city_glow: [{azimuth_deg: 0, spectrum: 0, horizon_cd_m2: 1}]}}",
+     "no light that the eye sees"},
+    {"{epoch: 2026-02-03T20:00:00Z, night_sky: {city_glow: [{azimuth_deg: 0, spectrum: 1, population: 1e5, "
+     "distance_km: "
+     "500}]}}",
+     "500"},
     {"{epoch: 2026-02-03T20:00:00Z, night_sky: {solar_flux_sfu: 5000}}", "5000"},
     {"{epoch: 2026-02-03T20:00:00Z, night_sky: {stars_to_mag: bright}}", "bright"},
     {"{epoch: 2026-02-03T20:00:00Z, night_sky: {resolve_stars: all}}", "in_view"},

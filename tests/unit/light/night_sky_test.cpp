@@ -250,13 +250,17 @@ TEST(NightMap, StarsKeepTheirLight) {
 
 // A sky of 259 S10 lights a plane with 6.8e-4 lx: the whole is near, and by night the eye sees more.
 TEST(NightMap, Illuminance) {
-  const NightIlluminance lx = illuminance_of(NightMap(whole_sky(), sphere_at("2026-03-20T23:00:00Z", kPlace)));
+  const char* const utc = "2026-03-20T23:00:00Z";
+  const CelestialSphere sphere = sphere_at(utc, kPlace);
+  const std::vector<SeenPlanet> planets = seen_planets(sphere, julian_tt(instant_from_utc(parse_iso8601(utc))));
+  const NightIlluminance lx = illuminance_of(NightMap(whole_sky(), sphere, planets));
   const double photopic = std::accumulate(lx.photopic.begin(), lx.photopic.end(), 0.0),
                scotopic = std::accumulate(lx.scotopic.begin(), lx.scotopic.end(), 0.0);
   EXPECT_GT(photopic, 5e-4);
   EXPECT_LT(photopic, 1.5e-3);
   EXPECT_GT(scotopic, photopic);
-  for (const double v : lx.photopic) EXPECT_GT(v, 1e-5);
+  for (size_t p = 0; p < kNightParts; ++p)
+    EXPECT_GT(lx.photopic[p], p == static_cast<size_t>(NightPart::city_glow) ? -1e-5 : 1e-5) << p;
   // Catalogue stars at V = 0.55 um: a plane facing a star of V = 0 has 2.54e-6 lx (within the spectrum's width).
   const GlowSpectrum vega{star_shape(9600).scaled(kVegaIrradiance)};
   EXPECT_NEAR(vega.photopic(), 2.54e-6, 0.06 * 2.54e-6);
