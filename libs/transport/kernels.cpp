@@ -20,7 +20,7 @@ const char* KernelChoice::name() const {
     case Space::field:
       return "general in media";
     case Space::lit_field:
-      return "general in media in lit air";
+      return "general in media and lit air";
     case Space::nothing:
       break;
   }

@@ -53,7 +53,7 @@ bool refracts(const KernelContext& context);
 inline bool is_refracted(const LightNature& light) { return light.placed || (light.far && light.drawn && !light.wide); }
 
 // The kernel that serves a state best: "matte" or "general", and what fills space: "", "air", "lit air" (that knows the
-// scene), "media", "media in lit air".
+// scene), "media", "media and lit air".
 struct KernelChoice {
   bool matte = false;
   enum class Space : uint8_t { nothing, air, lit_air, field, lit_field } space = Space::nothing;

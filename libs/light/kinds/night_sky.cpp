@@ -175,11 +175,11 @@ class NightSkyLight final : public LightSpec {
     Now now = *now_;
     now.settled = true;
     const bool traced = all.air && all.air->scattering == AirScattering::traced;
-    const bool lit = all.air && all.air->scattering == AirScattering::diffuse && all.air->adjacency && !now.media;
+    const bool lit = all.air && all.air->scattering == AirScattering::diffuse && all.air->adjacency;
     if (all.has_air() && !traced && !lit)
       said.push_back(
           "night sky: the air dims it, and what it scatters of it is left out (real air with 'scattering: diffuse' and "
-          "adjacency, without media, has it)");
+          "adjacency has it)");
     const double scale = spec_.scale[static_cast<size_t>(NightPart::stars)];
     const bool points = spec_.catalogue && spec_.in_view && scale > 0;
     if (points && (traced || now.media))

@@ -184,8 +184,8 @@ class FieldSpace {
   void set_rates(ScatterPlace& e) const;
   double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }
 
-  const bool plain_air_;  // outside bodies there is nothing but air that does not scatter paths
-  KnownWay seen_;         // of sensors' rays in it
+  const bool plain_air_;            // outside bodies there is nothing but air that does not scatter paths
+  KnownWay seen_;                   // of sensors' rays in it
   std::vector<double> index_;       // of refraction at the reference, per medium
   std::vector<double> delay_;       // group index there
   std::vector<double> asymmetry_;   // mean cosine of scattering there

@@ -131,8 +131,8 @@ void Manifold<Wave>::want(const Wave& wave, const PathNode& node, const SampledL
 
 template <class Wave>
 bool Manifold<Wave>::asks_through(const Wave& wave, const PathNode& node) const {
-  if (node.event) return !wave.in_air(node);       // the even field that it stands for knows no interfaces
-  return !is_interface(wave, node);                // Dirac lobes only
+  if (node.event) return !wave.in_air(node);  // the even field that it stands for knows no interfaces
+  return !is_interface(wave, node);           // Dirac lobes only
 }
 
 template <class Wave>
