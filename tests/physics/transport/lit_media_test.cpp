@@ -132,8 +132,7 @@ TEST(LitMedia, ACloudOverACoastIsThatOfTracedAir) {
                       lit = see(scene, sun_in(air, AirScattering::diffuse), rays, many(3000));
   tell("cloud", lit, traced);
   EXPECT_LT(largest_z(lit, traced), kSigmas);
-  for (size_t i = 0; i < lit.radiance.size(); ++i)
-    EXPECT_LT(lit.standard_error[i], 0.05 * lit.radiance[i]) << i;
+  for (size_t i = 0; i < lit.radiance.size(); ++i) EXPECT_LT(lit.standard_error[i], 0.05 * lit.radiance[i]) << i;
   EXPECT_GT(largest_z(see(scene, sun_in(air, AirScattering::diffuse, false), rays, 2000), traced), kSigmas);  // control
 }
 
@@ -161,10 +160,11 @@ TEST(LitMedia, WaterBesideLandIsThatOfTracedAir) {
   water.index = Curve::constant(1.34);
   Material surface = material("surface", {"dielectric", {}, {{"index", Curve::constant(1.34)}}, {}, nullptr});
   surface.inside = 0;
-  auto scene = scene_of({box({-kFar, -kFar, -20}, {0, kFar, 0}, 0, true),
-                         mesh_of({{0, -kFar, 0}, {kFar, -kFar, 0}, {kFar, kFar, 0}, {0, kFar, 0}}, {0, 1, 2, 0, 2, 3}, 1),
-                         quad(kFar, -40, 2)},
-                        {material("void", lambert(0)), material("land", lambert(0.6)), material("bed", lambert(0.1))});
+  auto scene =
+      scene_of({box({-kFar, -kFar, -20}, {0, kFar, 0}, 0, true),
+                mesh_of({{0, -kFar, 0}, {kFar, -kFar, 0}, {kFar, kFar, 0}, {0, kFar, 0}}, {0, 1, 2, 0, 2, 3}, 1),
+                quad(kFar, -40, 2)},
+               {material("void", lambert(0)), material("land", lambert(0.6)), material("bed", lambert(0.1))});
   scene->media = {water};
   scene->materials[0] = surface;
   check_scene(*scene, "water");
