@@ -57,7 +57,7 @@ class LitFieldSpace : public FieldSpace {
  private:
   // What flights from a place bring, until they have met a surface or been scattered: boundaries are passed.
   enum class Brings : uint8_t {
-    all,         // light of a path that is at no place's other end
+    all,         // L: it comes from no such place
     difference,  // D
     rest         // L, E having been taken off; beams are those of the place
   };
