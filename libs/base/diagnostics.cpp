@@ -83,8 +83,6 @@ constexpr DiagnosticKind kKinds[] = {
     {Dr::even_ground_beyond, kInfo, "an even ground continues beyond the scene and counts in the diffuse field",
      "extend the scene, or set its albedo"},
     {Dr::no_adjacency, kInfo, "this method leaves adjacency and shadows in the air out", "use the standard method"},
-    {Dr::adjacency_beside_media, kInfo, "adjacency and shadows in the air are left out, as media fill the scene",
-     "use `scattering: traced`"},
     {Dr::low_sun, kInfo, "sun or moon are so low that multiple scattering is less exact", "use `scattering: traced`"},
     {Dr::limb_low_sun, kInfo, "a sensor looks along the limb under a sun lower than was validated",
      "use `scattering: traced`"},

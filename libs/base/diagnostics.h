@@ -46,7 +46,6 @@ enum class Dr : int {
   air_open_below = 402,
   even_ground_beyond = 403,
   no_adjacency = 404,
-  adjacency_beside_media = 405,
   low_sun = 406,
   limb_low_sun = 407,
   scattered_once = 408,

@@ -36,7 +36,7 @@ struct PulseRows::Job {
         kernel(make_kernel(choose_kernel(context), context, kWave, throughputs, sink)),
         passive(passive_),
         active(active_),
-        scatters(choose_kernel(context).space == KernelChoice::Space::field) {}
+        scatters(choose_kernel(context).in_media()) {}
 
   void finish(const Tracer& tracer, PulseReport& report) {
     TraceStatistics statistics;

@@ -178,11 +178,17 @@ std::optional<AirVertices::Place> AirVertices::draw(Vec3 from, Dir d, double len
   return place;
 }
 
-// How far it is to the even ground, m; infinite where the sky lies beyond.
 double AirVertices::to_ground(Vec3 from, Dir d) const {
   const Shells& shells = column_->shells;
   if (shells.height(from) > ground_height_) return shells.way_down_to(from, d, ground_height_);
   return dot(d, shells.up(from)) < 0 ? 0 : kInfinity;
+}
+
+void AirVertices::even(Vec3 from, Dir d, std::span<float> scratch, std::span<float> radiance) const {
+  const double ground = to_ground(from, d);
+  if (ground == kInfinity) return air_.skylight(from, d, scratch, radiance);
+  air_.path(from, d, ground, scratch, radiance);
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += scratch[i] * ground_[i];
 }
 
 void AirVertices::beyond(Vec3 from, Dir d, double length, std::span<float> T, std::span<float> more,

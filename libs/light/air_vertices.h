@@ -56,9 +56,12 @@ class AirVertices {
   // to be less by, times -T. scratch: memory. Per bin.
   void beyond(Vec3 from, Dir d, double length, std::span<float> T, std::span<float> more,
               std::span<float> scratch) const;
+  // How far it is to the even ground, m; infinite where the sky lies beyond.
+  double to_ground(Vec3 from, Dir d) const;
+  // E along a way that nothing of the scene ends. scratch: memory. Per bin.
+  void even(Vec3 from, Dir d, std::span<float> scratch, std::span<float> radiance) const;
 
  private:
-  double to_ground(Vec3 from, Dir d) const;
   double end_of(Vec3 from, Dir d, double length) const;
   // Scattering depth over a height, vertically.
   void depth_over(double height, double sign, PerKnot& sums) const;

@@ -36,20 +36,20 @@ double curvature_radius(double latitude_deg) {
 }
 
 // What the way of following its light leaves out.
-std::string neglected(const AirSpec& air, const Scene& scene) {
+std::string neglected(const AirSpec& air) {
   if (air.scattering == AirScattering::traced) return {};
   const std::string shadows = "shadows that the scene throws into the air";
   if (air.scattering == AirScattering::single)
     return "air: light is scattered once; what is scattered more often, also between ground and air, and " + shadows +
            " are left out";
-  if (air.adjacency && scene.media.empty()) return {};
+  if (air.adjacency) return {};
   const std::string albedo = air.ground_of_scene || air.ground_of_any_scene
                                  ? "that of the scene in the mean"
                                  : strf("%.3g to %.3g", air.ground_albedo.min(), air.ground_albedo.max());
   return strf(
       "air: light between ground and air is that of an even ground (albedo %s); what single places "
-      "send into it (adjacency) and %s are left out%s",
-      albedo.c_str(), shadows.c_str(), air.adjacency ? ", as media fill the scene" : "");
+      "send into it (adjacency) and %s are left out",
+      albedo.c_str(), shadows.c_str());
 }
 
 constexpr const char* kBent =
@@ -74,7 +74,7 @@ std::shared_ptr<const AirSpec> placed(const std::shared_ptr<const AirSpec>& air,
   if (!air) return air;
   said.insert(said.end(), air->notes.begin(), air->notes.end());
   if (air->gases) said.push_back("gases: " + air->gases->note());
-  if (const std::string left_out = neglected(*air, scene); !left_out.empty()) said.push_back(left_out);
+  if (const std::string left_out = neglected(*air); !left_out.empty()) said.push_back(left_out);
   if (air->refraction && air->scattering != AirScattering::traced) said.push_back(kBent);
   if (air->scene_height) return air;
   auto here = std::make_shared<AirSpec>(*air);

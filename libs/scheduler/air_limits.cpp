@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "scene/primitives.h"
-#include "scheduler/air_left_out.h"
 #include "scheduler/moments.h"
 #include "scheduler/scattered_once.h"
 #include "scheduler/sensor_diagnostics.h"
@@ -113,21 +112,6 @@ bool looks_along_limb(const Sensor& sensor, const Shells& shells) {
         }
     }
   return false;
-}
-
-// Where media fill the scene, the size of what that leaves out.
-std::optional<std::string> left_out(const AirSpec& air, const Scene& scene, const Sensor& sensor) {
-  const std::shared_ptr<const Scene> borrowed(std::shared_ptr<void>(), &scene);
-  const auto out = left_out_of_air(air, borrowed, sensor);
-  if (!out || (out->adjacency < kLeastLeftOut && out->shadows < kLeastLeftOut)) return std::nullopt;
-  return strf(
-      "air: sensor '%s' looks at %.3g um through scattering of depth %.2g; as media fill the scene, the light of its "
-      "single places that is scattered there (their albedos differ by up to %.2g from the even ground's) is left out, "
-      "at "
-      "most %.2g in reflectance at the top of the air, and shadows in it, at most %.2g of the sunlight that it "
-      "scatters "
-      "once (`scattering: traced` has both)",
-      sensor.name().c_str(), out->um, out->depth, out->contrast, out->adjacency, out->shadows);
 }
 
 // The bands of a sensor that meet a range: each, or the first and the last of many.
@@ -243,7 +227,7 @@ std::vector<Diagnostic> diagnose_air(const SourceSpecs& written, const Scene& sc
   resolve_sources(first, scene);
   const AirSpec& air = *first.air;
   const TechniqueFacts facts = technique_facts(scene, written, job.pipeline);
-  if (air.adjacency && scene.media.empty()) {
+  if (air.adjacency) {
     if (!uses(ListedTechnique::adjacency, facts))
       found.push_back(
           {Dr::no_adjacency,
@@ -252,9 +236,6 @@ std::vector<Diagnostic> diagnose_air(const SourceSpecs& written, const Scene& sc
     else if (const auto sentence = beyond(air, written, scene, job))
       found.push_back({Dr::even_ground_beyond, *sentence});
   }
-  for (const auto& sensor : sensors)
-    if (air.adjacency && !scene.media.empty() && sees_sunlight(*sensor))
-      if (const auto sentence = left_out(air, scene, *sensor)) found.push_back({Dr::adjacency_beside_media, *sentence});
   if (air.round) diagnose_low_bodies(written, scene, sensors, air, found);
   return found;
 }

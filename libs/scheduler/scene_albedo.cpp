@@ -31,11 +31,6 @@ class Paths {
     start();
     std::vector<double> sums(bins_, 0.0);
     RunningStats of_paths;
-    double least = 1, greatest = 0;
-    const auto add = [&](double mean) {
-      of_paths.add(mean);
-      least = std::min(least, mean), greatest = std::max(greatest, mean);
-    };
     uint32_t met = 0;
     for (uint32_t n = 0; n < kMostSurfaces && !rays_.empty(); ++n) {
       hits_.resize(rays_.size());
@@ -50,14 +45,14 @@ class Paths {
           double mean = 0;
           for (size_t b = 0; ray.direction.z > 0 && b < bins_; ++b)
             sums[b] += double{light[b]}, mean += double{light[b]} / static_cast<double>(bins_);
-          add(mean);
+          of_paths.add(mean);
           continue;
         }
         if (n == 0) ++met;
         if (go_on(hits_[i], ray, path, n))
           rays_[kept] = ray, paths_[kept++] = path;
         else
-          add(0);
+          of_paths.add(0);
       }
       rays_.resize(kept), paths_.resize(kept);
     }
@@ -65,7 +60,6 @@ class Paths {
     if (met == 0) return out;
     for (const double sum : sums) out.of_bins.push_back(static_cast<float>(std::clamp(sum / met, 0.0, 1.0)));
     out.error = of_paths.stderr_of_mean();
-    out.least = std::clamp(least, 0.0, 1.0), out.greatest = std::clamp(greatest, 0.0, 1.0);
     return out;
   }
 

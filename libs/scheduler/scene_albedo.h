@@ -17,8 +17,6 @@ namespace suite {
 struct SceneAlbedo {
   std::vector<float> of_bins;  // 0..1; empty: nothing was met
   double error = 0;            // standard error of their mean
-  // What single places are worth: the least and the greatest mean over the bins that a path has come to, 0..1.
-  double least = 0, greatest = 0;
 };
 // At a time (s) within the tracer's window. The same on any number of threads.
 SceneAlbedo scene_albedo(const Tracer& tracer, const Optics& optics, double time);

@@ -62,7 +62,6 @@ constexpr TechniqueCondition kAdjacency[] = {
     {[](const Facts& f) { return f.real_air; }, "an atmosphere with a profile", "no real air in the simulation"},
     {[](const Facts& f) { return f.field; }, "`scattering: diffuse`", "the air has no field over an even ground"},
     {[](const Facts& f) { return f.adjacency; }, "`adjacency: true`", "`adjacency: false`"},
-    {[](const Facts& f) { return f.media == 0; }, "no media in the scene", "media fill the scene"},
     kStandard,
     kSampled};
 

@@ -82,6 +82,17 @@ class AirPlaces {
     return true;
   }
 
+  // How far off the place is that go_to() would draw, m; infinite: nothing scatters.
+  double distance_to(Vec3 from, Dir d, double length, double u, int knot) const {
+    const auto drawn = vertices_.draw(from, d, length, u, static_cast<size_t>(knot));
+    return drawn ? drawn->distance : std::numeric_limits<double>::infinity();
+  }
+
+  // AirVertices::to_ground, even.
+  double to_ground(Vec3 from, Dir d) const { return vertices_.to_ground(from, d); }
+  void even(Vec3 from, Dir d, std::span<float> scratch, std::span<float> radiance) const {
+    vertices_.even(from, d, scratch, radiance);
+  }
   // A flight of `length` (m, finite) from such a place: what it does to light, and what the scene's end of it is to be
   // less by (AirVertices::beyond).
   void beyond(Vec3 from, Dir d, double length, std::span<float> through, std::span<float> more) {

@@ -117,6 +117,10 @@ inline std::array<double, 4> of_place(const SampleStream& stream, uint32_t sampl
   if (n < kFlights) return stream.draw(sample, kPlace.first + n);
   return hashed(stream, sample, Hashed::place, 0, n);
 }
+// Whether it is that flight, when the path has been back before, so many times.
+inline double of_place_again(const SampleStream& stream, uint32_t sample, uint32_t n, uint32_t times) {
+  return SampleStream(hash_of(stream.key(), 0x616761696eull, times), 0).hashed(sample, n);
+}
 // Numbers of the guided continuation from the n-th surface of a path: where to, and by which scatterer.
 inline std::array<double, 4> of_guided(const SampleStream& stream, uint32_t sample, uint32_t n) {
   if (n < kNodes) return stream.draw(sample, kGuided.first + n);

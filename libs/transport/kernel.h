@@ -34,9 +34,10 @@ class PathKernel final : public PathTracing {
   void start(uint32_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) override;
   bool next(TraceRequest& request) override;
   const PathRecord& record(uint32_t p) override {
-    wave_.records[p].size = techniques_.splitting.surfaces(p, wave_.paths[p].surfaces);
-    if (techniques_.residual.has_been_back(p)) return techniques_.residual.record(p, wave_.records[p]);
-    return wave_.records[p];
+    if (!techniques_.residual.has_been_back(p)) wave_.records[p].size = wave_.paths[p].surfaces;
+    PathRecord& record = techniques_.residual.record(p, wave_.records[p]);
+    record.size = techniques_.splitting.surfaces(p, record.size);
+    return record;
   }
   const FirstMeeting& first(uint32_t p) const override { return firsts_[p]; }
   uint64_t take_nodes() override { return std::exchange(nodes_met_, 0); }

@@ -157,7 +157,6 @@ void PathKernel<Wave>::fly_one(size_t slot) {
   if (flight.arrival == Arrival::onward) path.claims.pass_boundary(flown);
   const bool leaves = flight.arrival == Arrival::met && length == std::numeric_limits<double>::infinity();
   c.radiance = leaves && techniques_.manifold.is_claimed(path, ClaimedLight::sky()) ? nullptr : flight.emitted;
-  if (flight.difference) c.light = kFromAir;
   // The sky of the air was asked for, too.
   if (const Light* sky = c.radiance && length == std::numeric_limits<double>::infinity() ? wave_.space.sky() : nullptr)
     if (const double density = wave_.space.sky_density(path.direction);

@@ -36,8 +36,8 @@ void PathKernel<Wave>::go_on() {
   for (size_t i = 0; i < wave_.nodes.size(); ++i)
     if (go_on(i)) active_[n++] = wave_.nodes[i].path;
   active_.resize(n);
-  techniques_.residual.go_back(wave_, in_stage_, active_);
   if (techniques_.splitting.on()) techniques_.splitting.take_up_ended(wave_, in_stage_, active_);
+  techniques_.residual.go_back(wave_, in_stage_, active_);
 }
 
 // One path; false when it ends here.
@@ -246,7 +246,7 @@ void PathKernel<Wave>::leave_claims(const PathNode& node, const Continuation& on
   PathClaims& claims = wave_.paths[node.path].claims;
   const NodeClaims* const made = techniques_.chains.claims(wave_, node);
   if (node.event) {
-    if (Space::kGoesBack) return claims.clear();  // it asks for nothing through interfaces
+    if (wave_.in_air(node)) return claims.clear();  // it asks for nothing through interfaces
     return claims.leave_scattering(made, kManifold, on.in);
   }
   if (techniques_.manifold.is_interface(wave_, node)) return claims.meet_interface(!wave_.passes(node, on));

@@ -40,7 +40,7 @@ void PathKernel<Wave>::connect(const PathNode& node, const SampledLight& light, 
   if (!(sample.scale > 0)) return;
   if (techniques_.manifold.on() && light.nature.far && is_refracted(light.nature))
     techniques_.manifold.want(wave_, node, light, sample);
-  if (Space::kGoesBack && node.event && light.index == kFromAir) return;  // the same as over the even ground
+  if (wave_.in_air(node) && light.index == kFromAir) return;  // the same as over the even ground
   if (!node.event && !wave_.surfaces.takes(p, hit, -path.direction, sample.direction)) return;
   Vec3 origin;
   if constexpr (Space::kScatters) {
@@ -84,7 +84,7 @@ void PathKernel<Wave>::resolve() {
     const Ray& ray = wave_.sight_rays.rays()[i];
     const bool behind_earth = wave_.is_behind_earth(ray, wave_.sight_rays.distance()[i]);
     if constexpr (Space::kGoesBack)
-      if (wave_.nodes[q.node].event && q.beam && wave_.space.in_air(wave_.nodes[q.node].path)) {
+      if (q.beam && wave_.in_air(wave_.nodes[q.node])) {
         lack(q, i, blocked[i] || behind_earth);  // it shines in the even field already
         continue;
       }

@@ -19,6 +19,8 @@ const char* KernelChoice::name() const {
       return matte ? "matte in lit air" : "general in lit air";
     case Space::field:
       return "general in media";
+    case Space::lit_field:
+      return "general in media and lit air";
     case Space::nothing:
       break;
   }
@@ -29,9 +31,9 @@ KernelChoice choose_kernel(const KernelContext& c) {
   using Space = KernelChoice::Space;
   KernelChoice choice;
   const bool media = !c.optics.media().empty(), air = c.environment.atmosphere != nullptr,
-             lit = air && c.environment.atmosphere->vertices() && goes_back(c.options);
+             lit = air && !c.stokes && c.environment.atmosphere->vertices() && goes_back(c.options);
   if (media)
-    choice.space = Space::field;
+    choice.space = lit ? Space::lit_field : Space::field;
   else if (air)
     choice.space = lit ? Space::lit_air : Space::air;
   choice.matte = !c.stokes && c.options.specialise && !c.receivers && c.options.method == Method::standard && !media &&
@@ -66,6 +68,7 @@ std::unique_ptr<PathTracing> make(const KernelContext& c, size_t width, Spectral
 std::unique_ptr<PathTracing> make_kernel(const KernelChoice& choice, const KernelContext& c, size_t width,
                                          SpectralThroughputs& throughputs, Sink<SpectralThroughputs>& sink) {
   using Space = KernelChoice::Space;
+  if (choice.space == Space::lit_field) return make_lit_field_kernel(c, width, throughputs, sink);
   const bool air = choice.space == Space::air;
   auto* const made =
       choice.space == Space::lit_air ? (choice.matte ? &make<MatteSurfaces, LitAirSpace, StandardEstimator>

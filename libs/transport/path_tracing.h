@@ -53,15 +53,21 @@ bool refracts(const KernelContext& context);
 inline bool is_refracted(const LightNature& light) { return light.placed || (light.far && light.drawn && !light.wide); }
 
 // The kernel that serves a state best: "matte" or "general", and what fills space: "", "air", "lit air" (that knows the
-// scene), "media".
+// scene), "media", "media and lit air".
 struct KernelChoice {
   bool matte = false;
-  enum class Space : uint8_t { nothing, air, lit_air, field } space = Space::nothing;
+  enum class Space : uint8_t { nothing, air, lit_air, field, lit_field } space = Space::nothing;
+  bool in_media() const { return space == Space::field || space == Space::lit_field; }
+  // Paths go back to places in the air (techniques/air_residual.h).
+  bool goes_back() const { return space == Space::lit_air || space == Space::lit_field; }
   const char* name() const;
 };
 KernelChoice choose_kernel(const KernelContext& context);
 std::unique_ptr<PathTracing> make_kernel(const KernelChoice& choice, const KernelContext& context, size_t width,
                                          SpectralThroughputs& throughputs, Sink<SpectralThroughputs>& sink);
+// For Space::lit_field (kernels_lit_field.cpp).
+std::unique_ptr<PathTracing> make_lit_field_kernel(const KernelContext& context, size_t width,
+                                                   SpectralThroughputs& throughputs, Sink<SpectralThroughputs>& sink);
 // For contexts with `stokes` (kernels_stokes.cpp).
 std::unique_ptr<PathTracing> make_stokes_kernel(const KernelChoice& choice, const KernelContext& context, size_t width,
                                                 StokesThroughputs& throughputs, Sink<StokesThroughputs>& sink);

@@ -33,11 +33,11 @@ class Pipeline {
   // The kernel that paths of this state run in: KernelChoice::name().
   const char* kernel() const { return choice_.name(); }
   // Whether samples may be negative: differences from an even ground (light/air_vertices.h).
-  bool is_signed() const { return choice_.space == KernelChoice::Space::lit_air; }
+  bool is_signed() const { return choice_.goes_back(); }
   // Whether paths carry polarisation.
   bool of_stokes() const { return channels_.of_stokes(); }
   // Whether paths leave points to sensors that ask for it (SensorRay::points_apart): media weaken points along flights.
-  bool leaves_points() const { return choice_.space != KernelChoice::Space::field; }
+  bool leaves_points() const { return !choice_.in_media(); }
   const Tracer& tracer() const { return surface_.tracer(); }
 
  private:

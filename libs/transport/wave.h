@@ -98,6 +98,12 @@ class Wave {
   size_t number_of(const PathNode& node) const { return static_cast<size_t>(&node - nodes.data()); }
   LightReceiver receiver(const PathNode& node) const;
   double time(const PathNode& node) const { return paths[node.path].time; }
+  // Whether it is a place in the air to which a path has gone back (techniques/air_residual.h): what the even field
+  // there has already is not asked for.
+  bool in_air(const PathNode& node) const {
+    if constexpr (Space::kGoesBack) return node.event && space.in_air(node.path);
+    return false;
+  }
   // memory: for a spectrum.
   SUITE_INLINE Factor evaluate(const PathNode& node, Dir in, std::span<float> memory);
   // Whether a continuation goes on behind the surface of the node.

@@ -7,7 +7,7 @@ import judge
 from programs import Refused, cpu_seconds
 from relations import SECONDS, relation_of
 from rows import TABLE
-from world import draw_world, prune
+from world import draw_world
 
 
 FLOOR = 0.1                    # of the level of light; times the tolerance 1e-5: what is below 1e-4 of the light has no bins of its own (SENSORS.md)
@@ -51,18 +51,8 @@ def groundless(world):
     return "profile" in world.sim.get("atmosphere", {}) and "floor_none" in world.rows
 
 
-def loses_scattered_night(world, case):
-    """Whether a term fills a scene with media that another leaves empty, under a night sky in air: beside media the air's field scatters
-    nothing of it, which the program reports."""
-    if "night_sky" not in world.sim or "profile" not in world.sim.get("atmosphere", {}):
-        return False
-    return len({bool(prune(term[1].scene).get("media")) for term in case.terms}) > 1
-
-
 def case_of(world, relation, seed):
     case = relation.make(world.copy(), random.Random(f"relation {seed}"))
-    if case and loses_scattered_night(world, case):
-        return None
     if case:
         case.floor = FLOOR * world.facts["level"]
         case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0), GROUNDLESS if groundless(world) else 0,

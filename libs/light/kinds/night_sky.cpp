@@ -184,11 +184,11 @@ class NightSkyLight final : public LightSpec {
     Now now = *now_;
     now.settled = true;
     const bool traced = all.air && all.air->scattering == AirScattering::traced;
-    const bool lit = all.air && all.air->scattering == AirScattering::diffuse && all.air->adjacency && !now.media;
+    const bool lit = all.air && all.air->scattering == AirScattering::diffuse && all.air->adjacency;
     if (all.has_air() && !traced && !lit)
       said.push_back(
           "night sky: the air dims it, and what it scatters of it is left out (real air with 'scattering: diffuse' and "
-          "adjacency, without media, has it)");
+          "adjacency has it)");
     const bool points =
         spec_.in_view && ((spec_.catalogue && scale(NightPart::stars) > 0) || scale(NightPart::planets) > 0);
     if (points && (traced || now.media))

@@ -19,11 +19,11 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       air_(c.environment.atmosphere.get()),
       ambient_(c.surface.tracer().scene().ambient),
       field_(c.surface.tracer().scene(), c.optics.state(), c.surface.tracer().periodic()),
-      plain_air_(air_ && !c.optics.air() && field_.placed().empty() && ambient_ == kNone),
-      seen_(plain_air_ ? c.optics.state().size() : 0),
       bodies_(c.surface),
       flights_(field_, c.optics, c.knot_probability, air_),
       sight_(c.surface, bodies_, flights_, c.optics.media().size(), c.lost),
+      plain_air_(air_ && !c.optics.air() && field_.placed().empty() && ambient_ == kNone),
+      seen_(plain_air_ ? c.optics.state().size() : 0),
       stacks_(c.width),
       ways_(c.width),
       events_(2 * c.width + 2),
@@ -46,12 +46,22 @@ void FieldSpace::start(uint32_t p, const LivePath& live) {
 
 Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
                        bool ends, std::span<float> through, std::span<float> emitted) {
-  Way& way = ways_[p];
+  double gap = 0;
+  length = begin_flight(p, live, record, hit, ray, length, gap);
+  return fly_on(p, live, record, hit, length, gap, ends, through, emitted);
+}
+
+double FieldSpace::begin_flight(uint32_t p, const LivePath& live, PathRecord& record, Hit& hit, const Ray& ray,
+                                double length, double& gap) {
   // This flight uses up the way on behind a boundary, whatever it comes to: the next one begins at the path's origin.
-  const double gap = std::exchange(way.gap, 0);
+  gap = std::exchange(ways_[p].gap, 0);
   if (gap > 0) bodies_.settle(hit, ray, gap);
   if (!hit.hit() && !stacks_[p].empty()) leave_scene(p, live, record);
-  if (hit.hit()) length = hit.distance;
+  return hit.hit() ? hit.distance : length;
+}
+
+Flight FieldSpace::fly_on(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, double length, double gap,
+                          bool ends, std::span<float> through, std::span<float> emitted) {
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
   const uint32_t medium = stacks_[p].medium(ambient_);
   const Branch branch = live.branch;
@@ -66,37 +76,51 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
                 flown.emits ? emitted.data() : nullptr};
   live.branch = Branch::none;
   live.sided = live.sided && flown.scattered;
-  const auto advance = [&](double distance) {
-    live.length += distance;
-    live.arrival += delay_of(medium) * distance;
-  };
   if (flown.scattered) {
-    advance(flown.distance);
+    live.length += flown.distance;
+    live.arrival += delay_of(medium) * flown.distance;
     if (live.surfaces == (record.received ? 1u : 0u)) record.scattered_first = true;
     remember(p, live.origin + live.direction * flown.distance);
     flight.arrival = Arrival::scattered;
-    return flight;
-  }
-  if (branch == Branch::forced) {  // nothing scatters there
+  } else if (branch == Branch::forced) {  // nothing scatters there
     record.end = PathEnd::absorbed;
     flight.arrival = Arrival::ended;
-    return flight;
+  } else {
+    end_flight(p, live, record, hit, gap, flight);
   }
-  if (!hit.hit() || !bodies_.is_boundary(surface_.material(hit))) return flight;
+  return flight;
+}
+
+void FieldSpace::end_flight(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, double gap, Flight& flight) {
+  if (!hit.hit() || !bodies_.is_boundary(surface_.material(hit))) return;
+  const uint32_t medium = stacks_[p].medium(ambient_);
   if (++live.flights >= kMostFlights) {
     record.end = PathEnd::max_nodes;
     record.truncated += live.throughput[0] * live.share * index_of(medium) * index_of(medium);
     flight.arrival = Arrival::ended;
-    return flight;
+    return;
   }
   const auto onward = bodies_.pass(stacks_[p], hit, {live.origin, live.direction, live.time, live.draw},
                                    hit.distance - gap, statistics_);
-  if (!onward) return flight;
-  advance(hit.distance);
+  if (!onward) return;
+  live.length += hit.distance;
+  live.arrival += delay_of(medium) * hit.distance;
   live.origin = hit.position;
-  way = {onward->start, onward->gap};
+  ways_[p] = {onward->start, onward->gap};
   flight.arrival = Arrival::onward;
-  return flight;
+}
+
+double FieldSpace::scattering_depth(std::span<const double> depths, size_t knot) const {
+  double tau = 0;
+  for (size_t m = 0; m < depths.size(); ++m)
+    tau += depths[m] * double{optics_.media()[m].scattering[optics_.state().knots[knot]]};
+  return tau;
+}
+
+std::span<const double> FieldSpace::depths_of(const LivePath& live, double length, uint32_t medium) {
+  depths_.assign(optics_.media().size(), 0);
+  flights_.add_depths({live.origin, live.direction, live.time, live.draw}, length, medium, depths_);
+  return depths_;
 }
 
 // Out of bodies that no surface ends there, which is told.
@@ -290,12 +314,7 @@ bool FieldSpace::dims(const Ray& ray, double distance, size_t i, std::span<float
   const std::span<const double> depth = sight_.depths(i);
   const bool dim = flights_.transmittance(depth, transmission);
   if (dim)
-    for (size_t k = 0; k < reach.size(); ++k) {
-      double tau = 0;
-      for (size_t m = 0; m < depth.size(); ++m)
-        tau += depth[m] * double{optics_.media()[m].scattering[optics_.state().knots[k]]};
-      reach[k] = std::exp(-tau);
-    }
+    for (size_t k = 0; k < reach.size(); ++k) reach[k] = std::exp(-scattering_depth(depth, k));
   if (!air_ || (is_airless(sight_.start(i)) && !(sight_.passes(i) > 0))) return dim;
   if (!dim) std::fill(transmission.begin(), transmission.end(), 1.0f);
   air_->transmittance(ray.origin, ray.direction, distance, phase_);

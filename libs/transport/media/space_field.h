@@ -129,6 +129,33 @@ class FieldSpace {
   void cross_way(const Hit& hit, uint32_t material, Dir in) { bodies_.transmit(way_, hit, material, in, statistics_); }
   TraceStatistics take_statistics();
 
+ protected:
+  // A flight of path p begins: settles what its ray has met, and puts it into the bodies around. gap: m, from its
+  // origin to where the ray began. Returns how far it goes at most, m.
+  double begin_flight(uint32_t p, const LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
+                      double& gap);
+  // The same flight once begun.
+  Flight fly_on(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, double length, double gap, bool ends,
+                std::span<float> through, std::span<float> emitted);
+  // It has come to its end, unscattered: passes boundaries that bend nothing.
+  void end_flight(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, double gap, Flight& flight);
+  uint32_t medium_around(uint32_t p) const { return stacks_[p].medium(ambient_); }
+  // Matter that is denser than the air, such as water, holds none of it.
+  bool is_airless(uint32_t medium) const { return index_of(medium) != 1; }
+  double delay_of(uint32_t medium) const { return medium == kNone || delay_.empty() ? 1 : delay_[medium]; }
+  // Density of each medium, integrated over `length` m from a path's origin in a medium; and the depth of scattering.
+  std::span<const double> depths_of(const LivePath& live, double length, uint32_t medium);
+  double scattering_depth(std::span<const double> depths, size_t knot) const;
+
+  const Surface& surface_;
+  const Optics& optics_;
+  const Atmosphere* air_;
+  uint32_t ambient_;
+  VolumeField field_;
+  Bodies bodies_;
+  Flights flights_;
+  MediaSight sight_;
+
  private:
   struct Way {       // of the next ray of a path
     Vec3 from;       // where it begins
@@ -155,21 +182,10 @@ class FieldSpace {
   }
   uint32_t mean_event() const { return 2 * static_cast<uint32_t>(stacks_.size()); }
   void set_rates(ScatterPlace& e) const;
-  // Matter that is denser than the air, such as water, holds none of it.
-  bool is_airless(uint32_t medium) const { return index_of(medium) != 1; }
   double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }
-  double delay_of(uint32_t medium) const { return medium == kNone || delay_.empty() ? 1 : delay_[medium]; }
 
-  const Surface& surface_;
-  const Optics& optics_;
-  const Atmosphere* air_;
-  uint32_t ambient_;
-  VolumeField field_;
-  const bool plain_air_;  // outside bodies there is nothing but air that does not scatter paths
-  KnownWay seen_;         // of sensors' rays in it
-  Bodies bodies_;
-  Flights flights_;
-  MediaSight sight_;
+  const bool plain_air_;            // outside bodies there is nothing but air that does not scatter paths
+  KnownWay seen_;                   // of sensors' rays in it
   std::vector<double> index_;       // of refraction at the reference, per medium
   std::vector<double> delay_;       // group index there
   std::vector<double> asymmetry_;   // mean cosine of scattering there

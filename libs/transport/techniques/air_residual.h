@@ -20,7 +20,7 @@ class AirResidual {
     passed_.resize(wave.paths.size());
     throughput_there_.resize(wave.paths.size() * wave.bins);
   }
-  void start(uint32_t p) { passed_[p].sum = 0, passed_[p].again = false; }
+  void start(uint32_t p) { passed_[p].sum = 0, passed_[p].again = false, passed_[p].times = 0; }
   void begin_flight(uint32_t p, const Path& path) { passed_[p].before = path; }
   // The flight of a path, of `length` m, before it has weakened it.
   void pass(Wave& wave, uint32_t p, double length);
@@ -30,9 +30,11 @@ class AirResidual {
   std::span<const uint32_t> returned() const { return returned_; }
   void clear_returned() { returned_.clear(); }
   bool has_been_back(uint32_t p) const { return passed_[p].again; }
-  // The record of a path that has been back: as it was when it first ended, with what was truncated since.
-  const PathRecord& record(uint32_t p, PathRecord& last) {
+  // The record of a path; of one that has been back as it was when it first ended, with what was truncated since.
+  PathRecord& record(uint32_t p, PathRecord& last) {
+    if (!passed_[p].again) return last;
     passed_[p].record.truncated += std::exchange(last.truncated, 0);
+    passed_[p].record.strayed += std::exchange(last.strayed, 0);
     return passed_[p].record;
   }
 
@@ -42,6 +44,7 @@ class AirResidual {
     Path path;                               // and the one that is remembered
     double sum = 0, weight = 0, length = 0;  // of all flights; of this one; m
     bool goes_on = false, again = false;     // scratch; it has been back
+    uint32_t times = 0;                      // so often
     PathRecord record;                       // of the time before
   };
   bool go_back(Wave& wave, uint32_t p);
@@ -63,7 +66,7 @@ class NoAirResidual {
   std::span<const uint32_t> returned() const { return {}; }
   void clear_returned() {}
   bool has_been_back(uint32_t) const { return false; }
-  const PathRecord& record(uint32_t, const PathRecord& last) { return last; }
+  PathRecord& record(uint32_t, PathRecord& last) { return last; }
 };
 
 template <class Wave>
@@ -74,9 +77,16 @@ void AirResidual<Wave>::pass(Wave& wave, uint32_t p, double length) {
   const auto chances = wave.space.chances(path, length);
   double weight = 0;  // whatever knot draws the path: it is no part of the densities that knots share
   for (size_t k = 0; k < wave.knots(); ++k) weight = std::max(weight, path.throughput[k] * chances[k]);
+  if constexpr (Wave::Space::kMedia) weight *= path.share;
   if (!(weight > kNothing)) return;
+  std::array<double, 4> u = dimensions::of_place(path.stream, path.sample, path.flights);
+  if constexpr (Wave::Space::kMedia) {
+    if (!wave.space.reaches(p, path, length, u[1])) return;
+    // What has chosen among these flights before does not choose again.
+    if (at.times > 0) u[0] = dimensions::of_place_again(path.stream, path.sample, path.flights, at.times);
+  }
   at.sum += weight;
-  if (dimensions::of_place(path.stream, path.sample, path.flights)[0] * at.sum >= weight) return;
+  if (u[0] * at.sum >= weight) return;
   at.path = path;
   at.weight = weight;
   at.length = length;
@@ -103,9 +113,11 @@ bool AirResidual<Wave>::go_back(Wave& wave, uint32_t p) {
   if (!at.again) {
     at.record = wave.records[p];
     at.record.size = wave.paths[p].surfaces;
+    at.record.scattered_first = at.record.scattered_first && at.path.scatterings > 0;  // not after that flight
     at.again = true;
-    wave.records[p].truncated = 0;
+    wave.records[p].truncated = wave.records[p].strayed = 0;
   }
+  ++at.times;
   Path& path = wave.paths[p] = at.path;
   if (!wave.throughputs.has_room(p, 1)) wave.throughputs.make_room(p);
   const std::span<float> through = wave.throughputs.take(p), there{&throughput_there_[p * wave.bins], wave.bins};

@@ -37,6 +37,7 @@ class Equiangular {
   // The share of a light sample at a scattering that is left to it; place: of the lamp.
   double beside(const Wave& wave, const PathNode& node, uint16_t light, bool point) const {
     if (lamps_.empty() || !node.event || !point || !flights_[node.path].shares || !has(light)) return 1;
+    if (wave.in_air(node)) return 1;
     const Flying& flight = flights_[node.path];
     const double t = length(wave.space.place(node.path) - flight.from), own = free_density(wave, flight, t);
     return own / (own + density(flight, t));

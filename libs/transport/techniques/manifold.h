@@ -131,8 +131,8 @@ void Manifold<Wave>::want(const Wave& wave, const PathNode& node, const SampledL
 
 template <class Wave>
 bool Manifold<Wave>::asks_through(const Wave& wave, const PathNode& node) const {
-  if (node.event) return !Wave::Space::kGoesBack;  // the even field that it stands for knows no interfaces
-  return !is_interface(wave, node);                // Dirac lobes only
+  if (node.event) return !wave.in_air(node);  // the even field that it stands for knows no interfaces
+  return !is_interface(wave, node);           // Dirac lobes only
 }
 
 template <class Wave>
@@ -157,7 +157,7 @@ void Manifold<Wave>::want_places(const Wave& wave) {
 template <class Wave>
 double Manifold<Wave>::lost(const Wave& wave, const SightQuestion& q, size_t ray, double passes) {
   if (!sight_ || q.light == kFromAir || !is_refracted(wave.environment.lights[q.light]->nature())) return passes;
-  if (Wave::Space::kGoesBack && wave.nodes[q.node].event) return passes;
+  if (wave.in_air(wave.nodes[q.node])) return passes;
   return sight_->unfound(wave.sight_rays.rays()[ray], wave.sight_rays.distance()[ray]).value_or(passes);
 }
 

@@ -158,11 +158,11 @@ std::map<ListedTechnique, bool> done(const Case& c) {
     return rendered(c, options) != all;
   };
   return {{ListedTechnique::manifold, changes(ListedTechnique::manifold)},
-          {ListedTechnique::volume_chains, kernel.space == KernelChoice::Space::field && refracted},
+          {ListedTechnique::volume_chains, kernel.in_media() && refracted},
           {ListedTechnique::side_vertex, changes(ListedTechnique::side_vertex)},
           {ListedTechnique::equiangular, changes(ListedTechnique::equiangular)},
           {ListedTechnique::caustic_guide, changes(ListedTechnique::caustic_guide)},
-          {ListedTechnique::adjacency, kernel.space == KernelChoice::Space::lit_air}};
+          {ListedTechnique::adjacency, kernel.goes_back()}};
 }
 
 // Scenes and techniques on which a table and the kernels do not agree.
