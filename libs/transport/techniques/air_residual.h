@@ -80,11 +80,10 @@ void AirResidual<Wave>::pass(Wave& wave, uint32_t p, double length) {
   if constexpr (Wave::Space::kMedia) weight *= path.share;
   if (!(weight > kNothing)) return;
   std::array<double, 4> u = dimensions::of_place(path.stream, path.sample, path.flights);
-  if constexpr (Wave::Space::kMedia) {
+  if constexpr (Wave::Space::kMedia)
     if (!wave.space.reaches(p, path, length, u[1])) return;
-    // What has chosen among these flights before does not choose again.
-    if (at.times > 0) u[0] = dimensions::of_place_again(path.stream, path.sample, path.flights, at.times);
-  }
+  // What has chosen among these flights before does not choose again.
+  if (at.times > 0) u[0] = dimensions::of_place_again(path.stream, path.sample, path.flights, at.times);
   at.sum += weight;
   if (u[0] * at.sum >= weight) return;
   at.path = path;
