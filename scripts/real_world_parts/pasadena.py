@@ -176,7 +176,7 @@ def run(context):
         result.rows.append(closure.row(depths))
         result.pictures["pasadena_" + closure.name.replace(" ", "_")] = spectra(
             "Pasadena, " + closure.name, "nm", "uW/(cm2 sr nm)", [("AVIRIS-NG", nm, closure.measured, closure.sigma_measured), ("ours", nm, closure.ours, closure.sigma_ours)])
-        result.notes.append("%s: by window %s %%. MODTRAN 6 with fitted water vapour leaves %.1f %% rms." % (
+        result.notes.append("%s: by window %s %%. MODTRAN 6 with fitted water vapour leaves %.1f %% rms (a figure given by others, which nothing here repeats)." % (
             closure.name.capitalize(), ", ".join("%+.1f" % x for x in result.rows[-1].details["windows"]), MODTRAN[closure.name]))
     if len(closures) > 1 and len(nm) > 100:
         result.notes.append(calibration_note(closures[0], closures[1]))
