@@ -70,7 +70,8 @@ class Presets(unittest.TestCase):
         cls.names = [line.split()[0] for line in run("dirsig-render", "--list-presets").splitlines()]
 
     def test_every_preset_names_its_sources(self):
-        self.assertEqual(sorted(self.names), ["aviris_ng", "emit", "msi"])
+        self.assertLessEqual({"aviris_ng", "emit", "msi", "viirs_dnb_like"}, set(self.names))
+        self.assertEqual(len(self.names), len(set(self.names)))
         for name in self.names:
             self.assertTrue(run("dirsig-render", "--preset", name).startswith("# Source: "), name)
         self.assertIn("did you mean 'emit'", run("dirsig-render", "--preset", "emitt", code=1))
