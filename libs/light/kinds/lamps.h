@@ -5,7 +5,7 @@
 // schedule switches and dims lamps in time; rays find them as they are at their time.
 //
 // Assumes: points are seen by nothing but the explicit sample; glowing surfaces glow equally in all directions of their
-// side, those with a map as bright as it says where they are. Glowing triangles, disks, boxes, bounded planes and
+// side, those with a map as bright as it says where they are. Glowing triangles, disks, bounded planes and
 // spheres are drawn; other exact surfaces that glow are met by chance only. In a scene that repeats itself every lamp
 // stands in every cell: an image of the cell is drawn first (lamp_images.h), then one of its lamps. Based on: Pharr,
 // Jakob & Humphreys, "Physically based rendering", 4th ed. 2023, chapter 12; cones towards spheres after section 6.2.4
