@@ -2,9 +2,12 @@
 import contextlib
 import io
 import json
+import math
 import os
 import re
 import resource
+import shutil
+import subprocess
 import unittest
 import warnings
 
@@ -14,6 +17,7 @@ from kit import ROOT, Case
 BLOCK = re.compile(r"^```(python|console)\n(.*?)^```", re.S | re.M)
 BLOCKS = BLOCK.findall((ROOT / "python/README.md").read_text())
 SECONDS = 20  # of CPU, for a notebook
+OWN_FILES = "own_files.md"
 
 
 def seconds():
@@ -44,13 +48,38 @@ class Documents(Case):
 
     def test_the_pages_of_docs_run(self):
         pages = {page: BLOCK.findall(page.read_text()) for page in sorted((ROOT / "docs").rglob("*.md"))}
-        pages = {page: [text for kind, text in blocks if kind == "python"] for page, blocks in pages.items()}
+        pages = {page: [text for kind, text in blocks if kind == "python"] for page, blocks in pages.items() if page.name != OWN_FILES}
         self.assertGreater(sum(map(len, pages.values())), 0)
         self.in_folder()
         for page, parts in pages.items():
             with self.subTest(page.name):
                 _, cpu = self.run_code(parts, page.name)
                 self.assertLess(cpu, SECONDS)
+
+    @unittest.skipUnless(shutil.which("gdal_translate"), "needs gdal-bin")
+    def test_the_page_on_own_files_makes_a_cube(self):
+        """With a hill, a pyramid and two flat spectra in the place of a user's files, and a tenth of the pixels to a side."""
+        self.in_folder()
+        section = (ROOT / "docs/guide" / OWN_FILES).read_text().split("\n## ")[1]
+        name, text = re.search(r"^```yaml\n# (\S+)\n(.*?)^```", section, re.S | re.M).groups()
+        (self.folder / name).write_text(text)
+        heights = "\n".join(" ".join(f"{150 + 10 * math.sin(row / 5) * math.cos(column / 7):.2f}" for column in range(41)) for row in range(41))
+        (self.folder / "dem.asc").write_text(f"ncols 41\nnrows 41\nxllcorner 475650\nyllcorner 5472900\ncellsize 50\n{heights}\n")
+        subprocess.run(["gdal_translate", "-q", "-a_srs", "EPSG:25832", "dem.asc", "dem.tif"], check=True)
+        (self.folder / "thing.obj").write_text("v -5 0 -5\nv 5 0 -5\nv 5 0 5\nv -5 0 5\nv 0 8 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 4 3 2\n")
+        for kind, value in (("grass", 0.3), ("metal", 0.5)):
+            (self.folder / f"{kind}.spectrum.txt").write_text("".join(f"{0.3 + 0.1 * i:.2f},{value}\n" for i in range(25)))
+        code = re.search(r"^```python\n(.*?)^```", section, re.S | re.M)[1]
+        small = code.replace("columns=120, rows=80, gsd_m=20", "columns=12, rows=8, gsd_m=200").replace('"pixel_m": 20', '"pixel_m": 200')
+        self.assertEqual(small.count("200"), 2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", rs.ProgramWarning)  # bins that miss 0.1 % by little
+            exec(compile(small, OWN_FILES, "exec"), {})
+        told = json.loads(subprocess.run(["gdalinfo", "-json", "out/map_map.tif"], capture_output=True, text=True, check=True).stdout)
+        self.assertEqual(len(told["bands"]), 60)
+        self.assertIn('ID["EPSG",25832]', told["coordinateSystem"]["wkt"])
+        self.assertEqual(told["geoTransform"][1], 200)
+        self.assertEqual(told["geoTransform"][2], 0)  # north-up
 
     def test_the_main_readme_runs(self):
         self.in_folder()
