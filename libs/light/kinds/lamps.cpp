@@ -53,11 +53,12 @@ void Lamps::Core::add_map(const LampSpec& s, const Scene& scene) {
   std::optional<SceneFrame> frame;
   if (s.map->system) frame = frame_of(scene, s.where, "the map of a lamp");
   maps.back() = std::make_unique<const PlacedLampMap>(s.map, frame);
+  has_maps = true;
 }
 
 double Lamps::Core::brightness(uint32_t spec, Vec3 place, double time) const {
   const double dimmed = dimming(specs[spec], time);
-  return maps[spec] && dimmed > 0 ? dimmed * maps[spec]->at(place) : dimmed;
+  return has_maps && maps[spec] && dimmed > 0 ? dimmed * maps[spec]->at(place) : dimmed;
 }
 
 Lamps::~Lamps() = default;
@@ -331,8 +332,8 @@ std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability,
   r.direction = point->direction;
   r.distance = point->distance;
   r.density = point->density * probability;
-  r.scale = core_->brightness(s.spec, point->position, time);
-  if (!(r.scale > 0)) return std::nullopt;
+  r.scale = dimmed;
+  if (core_->has_maps && !((r.scale = core_->brightness(s.spec, point->position, time)) > 0)) return std::nullopt;
   const double step = Tracer::arrive(double{s.step}, double{s.span}, r.distance);
   r.end = point->position + point->normal * (point->cosine > 0 ? step : -step);
   return r;

@@ -14,7 +14,8 @@ struct Lamps::Core {
   std::vector<Frame> frames;                               // of the specs
   std::vector<std::vector<float>> spectra;                 // of the specs
   std::vector<std::unique_ptr<const PlacedLampMap>> maps;  // of the specs; null = none
-  std::vector<LampShape> shapes;                           // as numbered in the tree
+  bool has_maps = false;
+  std::vector<LampShape> shapes;  // as numbered in the tree
   std::unique_ptr<LightTree> tree;
   // Per object: the shapes of its triangles, kNone = does not glow or is not in the tree; one entry for exact surfaces.
   std::unordered_map<uint32_t, std::vector<uint32_t>> shape_of_triangle;
