@@ -190,7 +190,7 @@ def row_of(sky, found, cells, what, afternoon):
     stats = judged(relative, 0 * relative, sigma)
     return Row("MFRSR", "SGP E11, %s, sun 10-57 deg high, %s" % ("afternoon" if afternoon else "morning", what),
                "%d filters, %.0f-%.0f nm, diffuse over direct" % (len(found), sky.nm[0], sky.nm[len(found) - 1]), "ozone 310 DU, ground of grass, direct beam",
-               "calibration of each filter (morning), aerosol depth of each time and filter", "%",
+               "calibration of each filter and scale of its aerosol's course (morning), aerosol depth of each time and filter", "%",
                rest="median %.1f %%, 90th percentile %.1f %%" % (np.median(abs(relative)), np.percentile(abs(relative), 90)), held_out=afternoon,
                details={"by_filter": cells, "depth_550": [round(float(np.median(f[2])), 4) for f in found]}, **stats)
 

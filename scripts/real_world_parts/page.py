@@ -12,6 +12,8 @@ Ours beside what instruments measured, in one command; `--help` says what FOLDER
 
 - Bias and rms: ours less the instrument's. Share: values within two standard deviations, of the stated uncertainty and ours in quadrature.
 - Fitted: every number that was adjusted to the data. Nothing else was.
+- Chosen after looking at residuals: the way of calibrating the MFRSR (on the morning) and the window of HyTES's fit. The MFRSR's calibration takes the
+  course of its aerosol from the diffuse light, so its two lights are not independent: only the level of their ratio is tested.
 - *Held out*: run once, after the code was frozen.
 - Ours: spread of the given aerosol, the gas model's error ([ACCURACY.md](../../libs/air/ACCURACY.md)), scalar scattering in the blue ([air_lut](../../formats/air_lut/FORMAT.md)).
 - Gases: builtin, but where a water continuum is named.
