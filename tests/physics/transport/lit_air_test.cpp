@@ -7,31 +7,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "air/air_spec.h"
 #include "math/stats.h"
-#include "tests/support/radiometry_kit.h"
+#include "tests/support/lit_air_kit.h"
 
 namespace suite::test {
 namespace {
-
-// z-tests of all rays and bands at once; 0.5 % is allowed for what the field's tables are off.
-constexpr double kAllowed = 0.005, kSigmas = 4;  // of 12 values: 8e-4
-double largest_z(const CaptureResult& a, const CaptureResult& b) {
-  double largest = 0;
-  for (size_t i = 0; i < a.radiance.size(); ++i) {
-    const double off = std::fabs(a.radiance[i] - b.radiance[i]) - kAllowed * b.radiance[i];
-    largest = std::max(largest, off / std::hypot(a.standard_error[i], b.standard_error[i]));
-  }
-  return largest;
-}
-
-AirSpec haze(double depth) {
-  AirSpec air;
-  air.profile = standard_profile("us_standard");
-  air.aerosol = AirSpec::Aerosol{};
-  air.aerosol->profile = air.aerosol->profile.with_depth(depth);
-  return air;
-}
 
 struct View {
   std::shared_ptr<Scene> scene;
@@ -46,10 +26,6 @@ CaptureResult see(const View& view, AirSpec air, AirScattering scattering, bool 
   sources.add(SunSpec{{dir_from_angles(view.sun_zenith_deg * kDegree, 0.3), 0, Curve::constant(1)}});
   const std::vector<Band> bands{Band::rectangular("blue", 0.45, 0.01), Band::rectangular("red", 0.67, 0.01)};
   return render(view.scene, sources, std::make_unique<RaySensor>(view.rays, bands, paths, 0.02)).result;
-}
-Ray from_space(Vec3 to, double zenith_deg, double azimuth) {
-  const Dir d = -dir_from_angles(zenith_deg * kDegree, azimuth);
-  return {to - d * 2e5, d, 0};
 }
 
 // SUITE_LONG: 64 times the paths, so that errors are some 0.2 %.

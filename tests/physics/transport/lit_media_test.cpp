@@ -8,24 +8,14 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "air/air_spec.h"
 #include "light/kinds/night_sky.h"
 #include "spectral/planck.h"
+#include "tests/support/lit_air_kit.h"
 #include "tests/support/media_kit.h"
 
 namespace suite::test {
 namespace {
 
-// z-tests of all rays and bands at once; 0.5 % is allowed for what the field's tables are off.
-constexpr double kAllowed = 0.005, kSigmas = 4;  // of 12 values: 8e-4
-double largest_z(const CaptureResult& a, const CaptureResult& b, double allowed = kAllowed) {
-  double largest = 0;
-  for (size_t i = 0; i < a.radiance.size(); ++i) {
-    const double off = std::fabs(a.radiance[i] - b.radiance[i]) - allowed * b.radiance[i];
-    largest = std::max(largest, off / std::hypot(a.standard_error[i], b.standard_error[i]));
-  }
-  return largest;
-}
 void tell(const char* what, const CaptureResult& a, const CaptureResult& b) {
   for (size_t i = 0; i < a.radiance.size(); ++i)
     std::printf("%s %zu: %.6g +- %.2g, beside %.6g +- %.2g, off %.2f %%\n", what, i, a.radiance[i], a.standard_error[i],
@@ -37,13 +27,6 @@ uint32_t many(uint32_t paths) {
   return factor ? static_cast<uint32_t>(std::max(1, std::atoi(factor))) * paths : paths;
 }
 
-AirSpec haze(double depth) {
-  AirSpec air;
-  air.profile = standard_profile("us_standard");
-  air.aerosol = AirSpec::Aerosol{};
-  air.aerosol->profile = air.aerosol->profile.with_depth(depth);
-  return air;
-}
 SourceSpecs sun_in(AirSpec air, AirScattering scattering, bool adjacency = true) {
   air.scattering = scattering, air.adjacency = adjacency;
   SourceSpecs sources;
@@ -55,10 +38,6 @@ CaptureResult see(const std::shared_ptr<Scene>& scene, const SourceSpecs& source
                   uint32_t paths) {
   const std::vector<Band> bands{Band::rectangular("blue", 0.45, 0.01), Band::rectangular("red", 0.67, 0.01)};
   return render(scene, sources, std::make_unique<RaySensor>(rays, bands, paths, 0.02)).result;
-}
-Ray from_space(Vec3 to, double zenith_deg, double azimuth) {
-  const Dir d = -dir_from_angles(zenith_deg * kDegree, azimuth);
-  return {to - d * 2e5, d, 0};
 }
 
 // A dark sea and a bright land that meet at x = 0.
