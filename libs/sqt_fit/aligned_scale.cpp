@@ -25,22 +25,32 @@ struct LeafPart {
   double x, y, width;
 };
 
-// Points of a part on a square grid, and where they are in the leaf.
+constexpr size_t kLanes = 8;
+size_t whole_lanes(size_t points) { return (points + kLanes - 1) / kLanes * kLanes; }
+
+// Points of a part on a square grid, and where they are in the leaf; offsets are filled up to whole lanes.
 struct LeafGrid {
   int side = 0;
   std::vector<Dir> direction;
   std::vector<float> dx, dy;
-  std::vector<PolarProfile::At> polar;
+  std::vector<float> profile;  // log2 of the profile along the normal there, [channel][point]; empty: not asked yet
   void fill(const LeafPart& part, int n) {
     side = n;
-    direction.clear(), dx.clear(), dy.clear(), polar.clear();
+    direction.clear(), dx.clear(), dy.clear(), profile.clear();
     for (int k = 0; k < n * n; ++k) {
       const double ux = (k % n + 0.5) / n, uy = (k / n + 0.5) / n;
       direction.push_back(direction_in(part.id, {ux, uy}));
-      polar.push_back(PolarProfile::locate(1 - direction.back().z));
       dx.push_back(static_cast<float>(part.x + ux * part.width - 0.5));
       dy.push_back(static_cast<float>(part.y + uy * part.width - 0.5));
     }
+    dx.resize(whole_lanes(dx.size())), dy.resize(dx.size());
+  }
+  void ask(const PolarProfile& polar, size_t sheet, size_t channels) {
+    std::vector<PolarProfile::At> at;
+    for (const Dir& d : direction) at.push_back(PolarProfile::locate(1 - d.z));
+    profile.assign(channels * dx.size(), 0);
+    for (size_t c = 0; c < channels; ++c)
+      for (size_t k = 0; k < at.size(); ++k) profile[c * dx.size() + k] = polar.log2(sheet, at[k], c);
   }
 };
 
@@ -107,9 +117,10 @@ class LeafIntegral {
       LeafGrid& grid = grids_[static_cast<size_t>(closer - 1)];
       if (!grid.side) grid.fill(part, closer * usual);
       if (!weigh(grid, map)) continue;
+      if (polar && grid.profile.empty()) grid.ask(polar_, sheet, layout_.channels);
       const double area = cell_solid_angle(order) * copies;
       if (polar)
-        add_polar(grid, part.width, sheet, area, views_[t], leaf, &integral[t * layout_.channels]);
+        add_polar(grid, part.width, area, views_[t], leaf, &integral[t * layout_.channels]);
       else
         add(grid, part.width, area, views_[t], leaf, &integral[t * layout_.channels]);
     }
@@ -117,34 +128,41 @@ class LeafIntegral {
   // What the points count for; false: nothing.
   bool weigh(const LeafGrid& grid, const LobeMap& map) {
     const size_t points = grid.direction.size();
-    weight_.resize(points);
+    weight_.assign(grid.dx.size(), 0);
     bool any = false;
     for (size_t k = 0; k < points; ++k) {
       const Dir d = grid.direction[k];
       const double cosine = map.cosine(d);
       const bool counts = !layout_.upper_only || cosine > 0;
-      weight_[k] =
-          counts ? static_cast<float>(map.stretch(d) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0)) : 0;
+      if (counts) weight_[k] = static_cast<float>(map.stretch(d) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0));
       any |= counts;
     }
     return any;
   }
+  // Sum of weight times 2^log2(k) over the points, in their order; log2 gives eight.
+  float sum_of(const auto& log2) const {
+    float sum = 0;
+    for (size_t k = 0; k < weight_.size(); k += kLanes) {
+      const EightFloats f = load<EightFloats>(&weight_[k]) * portable_exp2(log2(k));
+      for (size_t i = 0; i < kLanes; ++i) sum += f[i];
+    }
+    return sum;
+  }
   // Between the profile along the normal and the slice above.
-  void add_polar(const LeafGrid& grid, double width, size_t sheet, double area, const TotalView& view,
-                 const int16_t* leaf, double* integral) const {
+  void add_polar(const LeafGrid& grid, double width, double area, const TotalView& view, const int16_t* leaf,
+                 double* integral) const {
     const size_t views = layout_.views(), points = grid.direction.size();
     const float to_slope = view.w1 * scale_.unit() * static_cast<float>(width / grid.side);
     for (size_t c = 0; c < layout_.channels; ++c) {
       const int16_t* b = leaf + (c * views + view.high) * kStride;
-      float sum = 0;
-      for (size_t k = 0; k < points; ++k)
-        sum += weight_[k] *
-               portable_exp2(view.w0 * polar_.log2(sheet, grid.polar[k], c) +
-                             view.w1 * scale_.value(static_cast<float>(b[0]) + grid.dx[k] * static_cast<float>(b[1]) +
-                                                    grid.dy[k] * static_cast<float>(b[2])));
-      integral[c] += static_cast<double>(sum * mean_exp2(to_slope * static_cast<float>(b[1])) *
-                                         mean_exp2(to_slope * static_cast<float>(b[2]))) *
-                     area / static_cast<double>(points);
+      const float value = b[0], gx = b[1], gy = b[2];
+      const float* const profile = &grid.profile[c * grid.dx.size()];
+      const float sum = sum_of([&](size_t k) {
+        const EightFloats number = value + load<EightFloats>(&grid.dx[k]) * gx + load<EightFloats>(&grid.dy[k]) * gy;
+        return view.w0 * load<EightFloats>(profile + k) + view.w1 * (static_cast<float>(scale_.offset) + number * scale_.unit());
+      });
+      integral[c] += static_cast<double>(sum * mean_exp2(to_slope * gx) * mean_exp2(to_slope * gy)) * area /
+                     static_cast<double>(points);
     }
   }
   void add(const LeafGrid& grid, double width, double area, const TotalView& view, const int16_t* leaf,
@@ -157,8 +175,8 @@ class LeafIntegral {
       const float unit = scale_.unit();
       const float v = scale_.value(view.w0 * a[0] + view.w1 * b[0]), gx = unit * (view.w0 * a[1] + view.w1 * b[1]),
                   gy = unit * (view.w0 * a[2] + view.w1 * b[2]);
-      float sum = 0;
-      for (size_t k = 0; k < points; ++k) sum += weight_[k] * portable_exp2(v + grid.dx[k] * gx + grid.dy[k] * gy);
+      const float sum = sum_of(
+          [&](size_t k) { return v + load<EightFloats>(&grid.dx[k]) * gx + load<EightFloats>(&grid.dy[k]) * gy; });
       integral[c] += static_cast<double>(sum * mean_exp2(gx * spacing) * mean_exp2(gy * spacing)) * area /
                      static_cast<double>(points);
     }
