@@ -184,6 +184,12 @@ class PathLight {
   const Paths& paths_;
 };
 
+// A height, and how much longer the way down from there is than straight down.
+std::string seen_from(double height, double longer) {
+  return strf("%.3g km", height / 1000) +
+         (longer < 1.0005 ? " straight down" : strf(", %.3g times the way straight down", longer));
+}
+
 // Names of the rows, in their order.
 std::vector<std::string> sunlight_names(const Paths& p, Depths::Scatterers scatterers) {
   std::vector<std::string> names;
@@ -191,14 +197,14 @@ std::vector<std::string> sunlight_names(const Paths& p, Depths::Scatterers scatt
     names.push_back(strf("sunlight through %.3g air masses", m));
     for (const double h : p.heights)
       for (const double v : p.views)
-        names.push_back(strf("sunlight through %.3g air masses and %.3g of the lowest %.3g km", m, v, h / 1000));
+        names.push_back(strf("sunlight through %.3g air masses (seen from %s)", m, seen_from(h, v).c_str()));
   }
   for (const auto& [what, any] :
        {std::pair{"molecules", scatterers.molecules}, std::pair{"particles", scatterers.particles}}) {
     if (!any) continue;
     for (const double h : p.heights)
       for (const double v : p.views)
-        names.push_back(strf("sunlight that %s scatter into %.3g times the lowest %.3g km", what, v, h / 1000));
+        names.push_back(strf("sunlight that %s scatter below (seen from %s)", what, seen_from(h, v).c_str()));
     for (const double v : p.sky) names.push_back(strf("sky that %s scatter, at %.3g air masses", what, v));
   }
   return names;
@@ -206,10 +212,9 @@ std::vector<std::string> sunlight_names(const Paths& p, Depths::Scatterers scatt
 std::vector<std::string> glow_names(const Paths& p) {
   std::vector<std::string> names;
   for (const double h : p.heights)
-    for (const double v : p.views) {
-      names.push_back(strf("the ground's emission through %.3g times the lowest %.3g km", v, h / 1000));
-      names.push_back(strf("emission upwards of %.3g times the lowest %.3g km of air", v, h / 1000));
-    }
+    for (const double v : p.views)
+      for (const char* what : {"the ground's emission", "emission of the air below"})
+        names.push_back(strf("%s (seen from %s)", what, seen_from(h, v).c_str()));
   for (const double v : p.sky) names.push_back(strf("emission downwards of %.3g air masses", v));
   names.push_back("reflected emission of the air");
   return names;
@@ -366,7 +371,7 @@ std::vector<SeenSpectra> AirPaths::spectra(PathSet set) const {
     SeenSpectra of{SpectrumRole::light, {}, {}};
     for (const Way& way : ways)
       for (const std::string& name : other.names)
-        of.names.push_back(strf("%s through %.3g times the lowest %.3g km", name.c_str(), way.mass, way.height / 1000));
+        of.names.push_back(strf("%s (seen from %s)", name.c_str(), seen_from(way.height, way.mass).c_str()));
     of.over = [s = shared_, over = other.over, ways](const SpectralState& state) {
       return through(over(state), *s->of(state)->with, ways);
     };

@@ -159,7 +159,8 @@ class LeafIntegral {
       const float* const profile = &grid.profile[c * grid.dx.size()];
       const float sum = sum_of([&](size_t k) {
         const EightFloats number = value + load<EightFloats>(&grid.dx[k]) * gx + load<EightFloats>(&grid.dy[k]) * gy;
-        return view.w0 * load<EightFloats>(profile + k) + view.w1 * (static_cast<float>(scale_.offset) + number * scale_.unit());
+        return view.w0 * load<EightFloats>(profile + k) +
+               view.w1 * (static_cast<float>(scale_.offset) + number * scale_.unit());
       });
       integral[c] += static_cast<double>(sum * mean_exp2(to_slope * gx) * mean_exp2(to_slope * gy)) * area /
                      static_cast<double>(points);
