@@ -268,26 +268,6 @@ TEST(Stokes, LightOfModelsWithoutMatricesIsTold) {
   }
 }
 
-// Which techniques are off is said where they would be on.
-TEST(Stokes, TechniquesWithoutMatricesAreNamed) {
-  const auto said = [](ModelSpec surface, bool stokes) {
-    std::string all;
-    JobOptions job;
-    job.progress = false;
-    job.diagnose = [&](const Diagnostic& d) { all += line_of(d) + "\n"; };
-    std::vector<std::unique_ptr<Sensor>> sensors;
-    if (stokes)
-      sensors.push_back(std::make_unique<StokesRays>(std::vector<Ray>{towards_origin(0.5)}, 4));
-    else
-      sensors.push_back(std::make_unique<RaySensor>(std::vector<Ray>{towards_origin(0.5)}, one_band(), 4));
-    run_job(scene_of({quad(100, 0, 0)}, {material("plate", std::move(surface))}), sky(false), sensors, job);
-    return all;
-  };
-  EXPECT_NE(said(dielectric(1.5), true).find("[DR208]"), std::string::npos);
-  EXPECT_EQ(said(dielectric(1.5), false).find("[DR208]"), std::string::npos);
-  EXPECT_EQ(said(lambert(0.5), true).find("[DR208]"), std::string::npos);
-}
-
 // Light scattered once by a thin layer of air: I = P11(90 deg...) tau / ..., sun at 60 deg, looked at straight down
 // (closed form, depolarisation 0.0279; Hansen & Travis 1974): I/E0 7.369816e-4, degree 0.573657.
 TEST(Stokes, AThinLayerOfAirScattersOnce) {
