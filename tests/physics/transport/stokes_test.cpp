@@ -287,38 +287,5 @@ TEST(Stokes, AThinLayerOfAirScattersOnce) {
   EXPECT_EQ(seen.depolarised, 0);
 }
 
-// Flights aside bring, in media that scatter forwards, what chance brings without them: Stokes vectors agree, and those
-// with them take a quarter of the paths. A matrix that polarises: off-diagonal elements up to 0.6 and retardance. 16
-// numbers at 6 errors of some 14 degrees: by chance 5e-4 of seeds fail.
-TEST(Stokes, FlightsAsideBringPolarisedLight) {
-  const ModelSpec forward{"tabulated",
-                          {},
-                          {},
-                          {{"table", "0 400, 5 60, 20 4, 60 0.5, 120 0.1, 140 0.35, 160 0.15, 180 0.3"},
-                           {"matrix",
-                            "0 0 1 1 0 1, 30 -0.2 0.97 0.95 0.1 0.94, 90 -0.6 0.9 0.4 0.3 0.35, 140 0.3 0.85 -0.6 -0.3 "
-                            "-0.55, 180 0 0.7 -0.7 0 -0.4"}},
-                          nullptr};
-  const auto scene = slab_scene(medium(Curve::constant(0), Curve::constant(1), forward), 1);
-  SourceSpecs sources;
-  sources.add(SunSpec{{dir_from_angles(0.7, 0.5), 0, Curve::constant(1)}});
-  std::vector<Ray> rays;
-  for (int i = 0; i < 4; ++i) rays.push_back({{0, 0, -0.5}, dir_from_angles(0.3 + 0.2 * i, 0.8 * i), 0});
-  std::vector<StokesSeen> seen[2];
-  for (const bool aside : {false, true}) {
-    PipelineOptions options;
-    options.side_flights = aside;
-    options.seed = aside ? 1 : 2;
-    seen[aside] = see_stokes(scene, sources, rays, aside ? 1 << 14 : 1 << 16, {}, options);
-  }
-  double polarised = 0;
-  for (size_t i = 0; i < rays.size(); ++i)
-    for (size_t k = 0; k < 4; ++k) {
-      const StokesSeen &a = seen[0][i], &b = seen[1][i];
-      EXPECT_NEAR(a.S[k], b.S[k], 6 * std::hypot(a.error[k], b.error[k])) << "IQUV"[k] << " of ray " << i;
-      if (k > 0) polarised = std::max(polarised, std::fabs(b.S[k]) / (b.error[k] + 1e-12));
-    }
-  EXPECT_GT(polarised, 30) << "it is resolved";
-}
 }  // namespace
 }  // namespace suite::test
