@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "math/sampling.h"
 #include "scene/scene.h"
-#include "transport/channels.h"
 #include "transport/lost_light.h"
 #include "transport/media/bodies.h"
 #include "transport/refracted_ray.h"
@@ -311,15 +310,9 @@ std::vector<Diagnostic> diagnose_surroundings(const Tracer& tracer, const Optics
 }
 
 std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
-                                             const PipelineOptions& options, uint32_t paths, const Sensor& sensor) {
-  const bool stokes = ChannelPlan(sensor.channels()).of_stokes();
-  std::vector<Diagnostic> all = diagnose_lost_light(
-      tracer.scene(), sources, optics, stokes ? for_stokes(options) : options, paths, tracer.periodic().has_value());
-  if (stokes && SmoothInterfaces(tracer.scene(), optics).any())
-    all.push_back({Dr::stokes_techniques,
-                   "sensor '" + sensor.name() +
-                       "' sees polarisation: manifold NEE, multi-vertex volumetric NEE and splitting in water carry no "
-                       "Mueller matrices and are off; light behind smooth interfaces is left to chance"});
+                                             const PipelineOptions& options, uint32_t paths) {
+  std::vector<Diagnostic> all =
+      diagnose_lost_light(tracer.scene(), sources, optics, options, paths, tracer.periodic().has_value());
   for (Diagnostic& d : diagnose_surroundings(tracer, optics)) all.push_back(std::move(d));
   return all;
 }

@@ -50,12 +50,6 @@ inline bool goes_back(const PipelineOptions& options) {
   return options.explicit_sources && options.method == Method::standard;
 }
 
-// What is left of them where paths carry polarisation: techniques that tell their matrices.
-inline PipelineOptions for_stokes(PipelineOptions options) {
-  options.refracted_sources = options.volume_chains = options.equiangular = false;
-  return options;
-}
-
 // Error when a value is out of its range.
 void check(const PipelineOptions& options);
 

@@ -35,10 +35,7 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
       options_(options) {
   if (options_.method == Method::paper && !optics.media().empty())
     throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
-  if (of_stokes()) {
-    check_stokes();
-    options_ = for_stokes(options_);
-  }
+  if (of_stokes()) check_stokes();
   check(options_);
   if (options_.method == Method::paper && options_.max_nodes == 0) options_.max_nodes = kPaperNodes;
   choice_ = choose_kernel(context(environment_));

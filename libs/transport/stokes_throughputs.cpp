@@ -17,6 +17,20 @@ void StokesThroughputs::begin_rows(uint32_t p, const Mueller& sensor) {
   unknown_[p] = 0;
 }
 
+void StokesThroughputs::keep(uint32_t p, float share, Kept& to) {
+  SpectralThroughputs::keep(p, share, to);
+  const auto rows = rows_.begin() + static_cast<std::ptrdiff_t>(p * bins());
+  to.rows.assign(rows, rows + static_cast<std::ptrdiff_t>(grey_[p] ? 1 : bins()));
+  to.unknown = unknown_[p];
+}
+
+void StokesThroughputs::resume(uint32_t p, const Kept& from) {
+  SpectralThroughputs::resume(p, from);
+  std::copy(from.rows.begin(), from.rows.end(), rows_.begin() + static_cast<std::ptrdiff_t>(p * bins()));
+  grey_[p] = from.rows.size() == 1;
+  unknown_[p] = from.unknown;
+}
+
 void StokesThroughputs::multiply(uint32_t p, const PolarisedEvent& event) {
   Mueller* const rows = &rows_[p * bins()];
   unknown_[p] = 1 - (1 - unknown_[p]) * (1 - event.unknown);

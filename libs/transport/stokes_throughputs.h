@@ -24,6 +24,12 @@ class StokesThroughputs : public SpectralThroughputs {
     SpectralThroughputs::scatter(p, w, event);
     if (event.polarised) multiply(p, *event.polarised);
   }
+  struct Kept : SpectralThroughputs::Kept {
+    std::vector<Mueller> rows;  // one for all bins, or one a bin
+    float unknown = 0;
+  };
+  void keep(uint32_t p, float share, Kept& to);
+  void resume(uint32_t p, const Kept& from);
   // The path's light goes to the targets: component k of the Stokes vector to targets[k], kNone = to none.
   struct Targets {
     uint16_t of[4];

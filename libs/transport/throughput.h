@@ -39,10 +39,18 @@ class SpectralThroughputs {
     c.scale = weight;
     if (weights) add_turn(c, p, weights);
   }
-  // T <- a spectrum; L stays.
-  void resume(uint32_t p, std::span<const float> T) {
+  // T as it stands, times a share, to go back to: T <- what was kept; L stays.
+  struct Kept {
+    std::vector<float> spectrum;
+  };
+  void keep(uint32_t p, float share, Kept& to) {
+    const std::span<const float> T = throughput(p);
+    to.spectrum.resize(bins_);
+    for (size_t i = 0; i < bins_; ++i) to.spectrum[i] = share * T[i];
+  }
+  void resume(uint32_t p, const Kept& from) {
     settle(p);
-    std::copy(T.begin(), T.end(), &throughput_[size_t{p} * stride_]);
+    std::copy(from.spectrum.begin(), from.spectrum.end(), &throughput_[size_t{p} * stride_]);
   }
   // T <- T w: scattered, w over its density.
   void scatter(uint32_t p, const Factor& w, const Event&) { multiply(p, w); }

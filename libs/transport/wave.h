@@ -7,12 +7,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "transport/contacts.h"
 #include "transport/lost_light.h"
 #include "transport/node.h"
+#include "transport/path/suffix_matrices.h"
 #include "transport/path_tracing.h"
 #include "transport/shares.h"
 #include "transport/space_nothing.h"
@@ -35,10 +37,13 @@ struct HeroSet {
   std::array<double, kMaxKnots> probability;  // P_k
 };
 
-// The Mueller matrices of the last event, for algebras that carry polarisation.
+// What algebras that carry polarisation need: the matrices of the last event, or of the suffix under way; scratch.
 struct PolarisedScratch {
-  std::vector<Mueller> matrices, aside;
-  PolarisedEvent event;
+  SuffixMatrices suffix;
+  Interaction at;
+};
+struct NoPolarisedScratch {
+  NoMatrices suffix;
 };
 
 // Contributions of the stage, until a sink takes them.
@@ -82,7 +87,8 @@ class Wave {
   std::vector<PathNode> nodes;
   SightRays sight_rays;
   std::vector<float> transmission;  // scratch
-  PolarisedScratch polarisation;
+  using Matrices = std::conditional_t<kStokes, SuffixMatrices, NoMatrices>;
+  std::conditional_t<kStokes, PolarisedScratch, NoPolarisedScratch> polarisation;
   TraceStatistics touching;  // of short rays at touching bodies
 
   size_t knots() const {
@@ -128,10 +134,14 @@ class Wave {
   // Memory for one spectrum of path p, `count` of which are taken before anything else is handed over.
   std::span<float> dense(uint32_t p, uint32_t count = 1);
 
-  // wave_stokes.h: the Mueller matrices of an event; null where no polarisation is carried. It stays until the next one
-  // is made: what refers to it has to be handed over first.
+  // wave_stokes.h: the Mueller matrices of an event, where polarisation is carried. They stay until the next are made:
+  // what refers to them has to be handed over first.
   // Of a node that scatters light from `in`; dirac: a continuation along a Dirac lobe, else null.
   const PolarisedEvent* polarise(const PathNode& node, Dir in, const Continuation* dirac = nullptr);
+  // The same of what lies behind it on the way of a suffix: matter at an event of the space, and a lobe of a smooth
+  // interface at a knot.
+  void polarise_further(uint32_t event, Dir out, Dir in);
+  void polarise_further(const Hit& hit, Dir out, Dir in, int lobe, int knot, double time);
   // Of what a warm surface sends out.
   const PolarisedEvent* polarise_emission(uint32_t p);
 

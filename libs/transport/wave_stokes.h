@@ -7,38 +7,47 @@ namespace suite {
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 const PolarisedEvent* Wave<Surfaces, Space, Throughputs, Estimator>::polarise(const PathNode& node, Dir in,
                                                                               const Continuation* dirac) {
-  if constexpr (kStokes) {
-    const Path& path = paths[node.path];
-    polarisation.matrices.resize(bins);
-    const Dir out = -path.direction;
-    ScatterModel::Polarised of;
-    bool scattered = false;
-    if constexpr (Space::kScatters)
-      if (node.event) {
-        of = space.mueller(node.path, out, in, polarisation.matrices);
-        scattered = true;
-      }
-    if (!scattered)
-      of = surfaces.mueller(node.path, out, in, dirac ? dirac->lobe : -1, path.knot, polarisation.matrices);
-    polarisation.event = {{polarisation.matrices.data(), of.grey ? 1 : bins}, static_cast<float>(of.unknown)};
-    return &polarisation.event;
-  }
-  return nullptr;
+  const Path& path = paths[node.path];
+  const Dir out = -path.direction;
+  polarisation.suffix.begin();
+  bool scattered = false;
+  if constexpr (Space::kScatters)
+    if (node.event) {
+      polarise_further(node.path, out, in);
+      scattered = true;
+    }
+  if (!scattered)
+    polarisation.suffix.take(
+        surfaces.mueller(node.path, out, in, dirac ? dirac->lobe : -1, path.knot, polarisation.suffix.next(bins)));
+  return polarisation.suffix.event();
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void Wave<Surfaces, Space, Throughputs, Estimator>::polarise_further(uint32_t event, Dir out, Dir in) {
+  polarisation.suffix.take(space.mueller(event, out, in, polarisation.suffix.next(bins)));
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void Wave<Surfaces, Space, Throughputs, Estimator>::polarise_further(const Hit& hit, Dir out, Dir in, int lobe,
+                                                                     int knot, double time) {
+  Interaction& at = polarisation.at;
+  surface.interact(hit, out, at, time);
+  const std::span<Mueller> m = polarisation.suffix.next(bins);
+  const auto of = at.baked->model->delta_mueller(at.frame.to_local(out), lobe, knot, m);
+  for (Mueller& one : of.grey ? m.first(1) : m)
+    if (one != Mueller::depolariser()) one = to_world(one, at.frame, out, in);
+  polarisation.suffix.take(of);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 const PolarisedEvent* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_emission(uint32_t p) {
-  if constexpr (kStokes) {
-    const Path& path = paths[p];
-    double u[3];
-    for (uint32_t i = 0; i < 3; ++i)
-      u[i] = path.stream.hashed(path.sample, dimensions::of_emission(path.order() - 1, i));
-    polarisation.matrices.resize(bins);
-    const auto of = surfaces.emission_mueller(p, -path.direction, {u[0], u[1]}, u[2], path.knot, polarisation.matrices);
-    polarisation.event = {{polarisation.matrices.data(), of.grey ? 1 : bins}, static_cast<float>(of.unknown)};
-    return &polarisation.event;
-  }
-  return nullptr;
+  const Path& path = paths[p];
+  double u[3];
+  for (uint32_t i = 0; i < 3; ++i) u[i] = path.stream.hashed(path.sample, dimensions::of_emission(path.order() - 1, i));
+  polarisation.suffix.begin();
+  polarisation.suffix.take(
+      surfaces.emission_mueller(p, -path.direction, {u[0], u[1]}, u[2], path.knot, polarisation.suffix.next(bins)));
+  return polarisation.suffix.event();
 }
 
 }  // namespace suite

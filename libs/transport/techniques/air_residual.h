@@ -16,10 +16,7 @@ template <class Wave>
 class AirResidual {
  public:
   using Path = typename Wave::Path;
-  void prepare(const Wave& wave) {
-    passed_.resize(wave.paths.size());
-    throughput_there_.resize(wave.paths.size() * wave.bins);
-  }
+  void prepare(const Wave& wave) { passed_.resize(wave.paths.size()); }
   void start(uint32_t p) { passed_[p].sum = 0, passed_[p].again = false, passed_[p].times = 0; }
   void begin_flight(uint32_t p, const Path& path) { passed_[p].before = path; }
   // The flight of a path, of `length` m, before it has weakened it.
@@ -41,7 +38,8 @@ class AirResidual {
  private:
   struct Passed {
     Path before;                             // as it began the flight under way
-    Path path;                               // and the one that is remembered
+    Path path;                               // and the one that is remembered,
+    typename Wave::Throughputs::Kept there;  // with its throughput
     double sum = 0, weight = 0, length = 0;  // of all flights; of this one; m
     bool goes_on = false, again = false;     // scratch; it has been back
     uint32_t times = 0;                      // so often
@@ -49,8 +47,7 @@ class AirResidual {
   };
   bool go_back(Wave& wave, uint32_t p);
   std::vector<Passed> passed_;
-  std::vector<float> throughput_there_;  // [path][bin]
-  std::vector<uint32_t> returned_;       // to such places
+  std::vector<uint32_t> returned_;  // to such places
 };
 
 // Where paths meet all light of the air by flying through it.
@@ -90,8 +87,7 @@ void AirResidual<Wave>::pass(Wave& wave, uint32_t p, double length) {
   at.weight = weight;
   at.length = length;
   wave.space.remember(p);
-  const std::span<const float> T = wave.throughputs.throughput(p);
-  std::copy(T.begin(), T.end(), &throughput_there_[p * wave.bins]);
+  wave.throughputs.keep(p, 1, at.there);
 }
 
 template <class Wave>
@@ -119,17 +115,17 @@ bool AirResidual<Wave>::go_back(Wave& wave, uint32_t p) {
   ++at.times;
   Path& path = wave.paths[p] = at.path;
   if (!wave.throughputs.has_room(p, 1)) wave.throughputs.make_room(p);
-  const std::span<float> through = wave.throughputs.take(p), there{&throughput_there_[p * wave.bins], wave.bins};
+  const std::span<float> through = wave.throughputs.take(p);
   const auto density = wave.space.go_to(p, path, at.length, u[1], through);
   if (density) {
     const double own = (*density)[static_cast<size_t>(path.knot)];
     path.relative.take(wave.knots(), *density, own);
     const double shares = path.relative.mean(wave.P());
     const auto scale = static_cast<float>(sum / (at.weight * chance * own * shares));
-    for (size_t i = 0; i < wave.bins; ++i) there[i] *= scale * through[i];
+    for (size_t i = 0; i < wave.bins; ++i) at.there.spectrum[i] *= scale * through[i];
     path.relative.divide(wave.knots(), shares);
     for (size_t k = 0; k < wave.knots(); ++k) path.throughput[k] *= double{scale} * through[wave.heroes.bins[k]];
-    wave.throughputs.resume(p, there);
+    wave.throughputs.resume(p, at.there);
     ++path.scatterings;
     path.events |= by_medium;
   }

@@ -20,7 +20,7 @@
 #include <limits>
 
 #include "transport/equiangular_law.h"
-#include "transport/wave.h"
+#include "transport/techniques/suffix_throughput.h"
 
 namespace suite {
 
@@ -61,7 +61,7 @@ class Equiangular {
   struct Vertex {  // of each shadow ray
     uint32_t path;
     const SampledLight* light;
-    double t, weight;  // m; what the place makes of light, over a + e
+    double t, weight;  // m; 1 / (a + e)
     LightSample sample;
     size_t through;  // in through_
   };
@@ -89,7 +89,7 @@ class Equiangular {
   std::vector<const SampledLight*> lights_;
   std::vector<Flying> flights_;  // [path]
   std::vector<Vertex> vertices_;
-  std::vector<float> through_;  // of each vertex, per bin: what the place and the way to it make of light
+  std::vector<float> through_;  // of each place, per bin: what the way to it leaves of light
   uint64_t nodes_ = 0;
 };
 
@@ -106,7 +106,7 @@ class NoEquiangular {
 
 template <class Wave>
 void Equiangular<Wave>::prepare(const Wave& wave) {
-  if (!wave.options.equiangular || Wave::kStokes) return;
+  if (!wave.options.equiangular) return;
   for (const SampledLight& light : wave.lights.sampled) {
     if (light.nature.far || !light.nature.placed) continue;
     const size_t before = lamps_.size();
@@ -195,17 +195,12 @@ void Equiangular<Wave>::put(Wave& wave, uint32_t p, double length) {
   through_.resize(at + wave.bins, 1.0f);
   wave.space.follow_way({path.origin, path.direction, path.time, path.draw}, t, {&through_[at], wave.bins},
                         wave.transmission);
-  const uint32_t event = wave.space.stand_on_way();
   const std::array<double, 4> v = dimensions::of_beside(path.stream, path.sample, path.flights, 1);
   ++nodes_;
   for (const SampledLight* light : lights_) {
     const auto sample = light->light->sample({place, {}, true}, v, path.time);
     if (!sample || sample->density > 0 || !sample->spectrum || !(sample->scale > 0)) continue;
-    const Factor w =
-        wave.space.evaluate(event, scattering_cosine(-path.direction, sample->direction), wave.transmission);
-    Vertex vertex{p, light, t, weight * double{w.scale}, *sample, through_.size()};
-    for (size_t b = 0; b < wave.bins; ++b) through_.push_back(through_[at + b] * (w.spectrum ? w.spectrum[b] : 1.0f));
-    vertices_.push_back(vertex);
+    vertices_.push_back({p, light, t, weight, *sample, at});
     wave.space.see_from_way();
     wave.sight_rays.add(sample->distance, false).set(place, sample->direction, path.time, path.draw);
   }
@@ -222,22 +217,25 @@ void Equiangular<Wave>::answer(Wave& wave) {
 
 template <class Wave>
 void Equiangular<Wave>::shine(Wave& wave, const Vertex& v, size_t i) {
-  const std::span<float> spectrum = wave.dense(v.path);  // throughputs read it later
-  std::copy_n(&through_[v.through], wave.bins, spectrum.data());
+  const Path& path = wave.paths[v.path];
+  SuffixThroughput<Wave> suffix(wave, wave.dense(v.path));
+  suffix.resume({&through_[v.through], wave.bins});
+  // The flight has not begun: what surrounds its origin is what fills the place.
+  wave.space.begin_way(v.path, true, {}, kNone, {}, {});
+  const double scattered = suffix.scatter_apart(wave.space.stand_on_way(), -path.direction, v.sample.direction);
   double reach[kMaxKnots];
   const double distance = wave.sight_rays.distance()[i];
   if (wave.space.dims(wave.sight_rays.rays()[i], distance, i, wave.transmission, {reach, wave.knots()}))
-    for (size_t b = 0; b < wave.bins; ++b) spectrum[b] *= wave.transmission[b];
+    suffix.weaken(wave.transmission);
   Contribution& c = wave.contribution(v.path, v.light->index);
   c.events |= by_medium;
   c.order += 1;
   c.asked = true, c.beam = v.light->beam;
-  if (wave.waters.any()) c.water = Waters::behind_scattering(wave.paths[v.path].water);
-  c.scale = static_cast<float>(v.weight * v.sample.scale);
-  c.factor = {1, spectrum.data()};
+  if (wave.waters.any()) c.water = Waters::behind_scattering(path.water);
+  c.scale = static_cast<float>(v.weight * scattered * v.sample.scale);
   c.radiance = v.sample.spectrum;
   c.arrival += wave.space.optical_way(v.path, i, v.t + distance);
-  wave.contribute();
+  suffix.contribute(c);
 }
 
 }  // namespace suite

@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "transport/refracted_sight.h"
-#include "transport/wave.h"
+#include "transport/techniques/suffix_throughput.h"
 
 namespace suite {
 
@@ -69,19 +69,18 @@ class Manifold {
 
   // For chains.
   RefractedSight::Node from_node(const Wave& wave, const PathNode& node) const;
-  struct Reached {             // the beginning of a way
-    std::span<float> through;  // what the node and what lies before make of the light
-    double arrival;            // m, optical, from the node
+  struct Reached {   // the beginning of a way
+    double arrival;  // m, optical, from the node
     double scale;
     uint32_t scatterings;  // since the node
     Dir first;             // from it
   };
   bool shine_along(Wave& wave, const RefractedWay& way, const RefractedQuestion& q, size_t knot);
-  // What comes along a way to where its beginning has been reached.
+  // What comes along a way to where its beginning has been reached. suffix: of what lies before, the node included.
   bool shine_behind(Wave& wave, const RefractedWay& way, const RefractedQuestion& q, size_t knot,
-                    const Reached& reached);
+                    const Reached& reached, SuffixThroughput<Wave>& suffix);
   // Leaves the bins whose light takes the ways of a knot's.
-  void keep_bins_of(const Wave& wave, size_t knot, std::span<float> through) const;
+  void keep_bins_of(const Wave& wave, size_t knot, SuffixThroughput<Wave>& suffix) const;
 
  private:
   struct Sent {  // towards the last interface
@@ -90,9 +89,9 @@ class Manifold {
   };
   template <class Chains, class Guide>
   void answer(Wave& wave, const RefractedQuestion& q, size_t knot, Chains& chains, Guide& guide);
-  // What is left of light along a way that has been begun, per bin, and its optical length. False: nothing.
-  bool attenuate(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky, std::span<float> through,
-                 double& arrival);
+  // Follows a way that has been begun; arrival: its optical length is added. False: nothing is left of its light.
+  bool follow(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky,
+              SuffixThroughput<Wave>& suffix, double& arrival);
   std::optional<Sent> sent(Wave& wave, const RefractedQuestion& q, const RefractedWay& way);
 
   std::unique_ptr<RefractedSight> sight_;  // null where nothing refracts
@@ -181,32 +180,30 @@ void Manifold<Wave>::answer(Wave& wave, Chains& chains, Guide& guide) {
 }
 
 template <class Wave>
-void Manifold<Wave>::keep_bins_of(const Wave& wave, size_t knot, std::span<float> through) const {
+void Manifold<Wave>::keep_bins_of(const Wave& wave, size_t knot, SuffixThroughput<Wave>& suffix) const {
   const std::vector<size_t>& set = sight_->interfaces().set_of();
   for (size_t i = 0; i < wave.bins; ++i)
-    through[i] *= set[static_cast<size_t>(wave.heroes.of_bin[i])] == knot ? 1.0f : 0.0f;
+    suffix.spectrum()[i] *= set[static_cast<size_t>(wave.heroes.of_bin[i])] == knot ? 1.0f : 0.0f;
 }
 
 template <class Wave>
-bool Manifold<Wave>::attenuate(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky,
-                               std::span<float> through, double& arrival) {
+bool Manifold<Wave>::follow(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky,
+                            SuffixThroughput<Wave>& suffix, double& arrival) {
   Ray ray{way.origin, way.direction, path.time, path.draw};
   for (int i = 0; i < way.events; ++i) {
     const RefractedEvent& at = way.at[i];
     if (wave.contacts.covers(ray, at.hit, wave.touching)) return false;
-    arrival += at.length * wave.space.follow_way(ray, at.length, through, wave.transmission);
-    at.model->delta_weight(at.out_local, sight_->interfaces().lobe(at.material, at.reflected), static_cast<int>(knot),
-                           wave.transmission);
-    for (size_t b = 0; b < wave.bins; ++b) through[b] *= wave.transmission[b];
+    arrival += at.length * suffix.follow(ray, at.length);
+    suffix.meet(at, sight_->interfaces().lobe(at.material, at.reflected), knot, path.time);
     if (!at.reflected) wave.space.cross_way(at.hit, at.material, at.in);
     ray.origin = wave.surface.tracer().leave(at.hit, at.in);
     ray.direction = at.in;
   }
   if (wave.is_behind_earth(ray, way.length)) return false;
   if (sky) return true;
-  const double delay = wave.space.follow_way(ray, way.length, through, wave.transmission);
+  const double delay = suffix.follow(ray, way.length);
   if (std::isfinite(way.length)) arrival += way.length * delay;  // far lights shine evenly in time
-  return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });
+  return std::ranges::any_of(suffix.spectrum(), [](float t) { return t != 0; });
 }
 
 template <class Wave>
@@ -246,25 +243,24 @@ bool Manifold<Wave>::shine_along(Wave& wave, const RefractedWay& way, const Refr
   const uint32_t p = node.path;
   const Path& path = wave.paths[p];
   if (!node.event && !wave.surfaces.takes(p, wave.hits[node.slot], -path.direction, way.direction)) return false;
-  const std::span<float> through = wave.dense(p, 3), memory = wave.throughputs.take(p);
-  const Factor factor = wave.evaluate(node, way.direction, memory);
-  for (size_t i = 0; i < wave.bins; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
-  keep_bins_of(wave, knot, through);
+  SuffixThroughput<Wave> suffix(wave, wave.dense(p, 2));
+  suffix.leave(node, way.direction);
+  keep_bins_of(wave, knot, suffix);
   wave.space.begin_way(p, node.event, wave.hits[node.slot], node.event ? kNone : wave.surfaces.material(p),
                        -path.direction, way.direction);
-  return shine_behind(wave, way, q, knot, {through, 0, 1, 0, way.direction});
+  return shine_behind(wave, way, q, knot, {0, 1, 0, way.direction}, suffix);
 }
 
 template <class Wave>
 bool Manifold<Wave>::shine_behind(Wave& wave, const RefractedWay& way, const RefractedQuestion& q, size_t knot,
-                                  const Reached& reached) {
+                                  const Reached& reached, SuffixThroughput<Wave>& suffix) {
   const PathNode& node = wave.nodes[q.node];
   const uint32_t p = node.path;
   const Path& path = wave.paths[p];
   const auto most = static_cast<uint32_t>(wave.options.max_nodes);
   if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return false;
   double arrival = reached.arrival;
-  if (!attenuate(wave, path, way, knot, q.sky, reached.through, arrival)) return false;
+  if (!follow(wave, path, way, knot, q.sky, suffix, arrival)) return false;
   const auto from_light = sent(wave, q, way);
   if (!from_light) return false;
   WaterSeen water = WaterSeen::nothing;
@@ -286,11 +282,10 @@ bool Manifold<Wave>::shine_behind(Wave& wave, const RefractedWay& way, const Ref
     c.order += static_cast<uint32_t>(way.events) + reached.scatterings;
     c.smooth += static_cast<uint32_t>(way.events);
     c.scale = static_cast<float>(from_light->scale * way.spreading * way.trials * reached.scale);
-    c.factor = {1, reached.through.data()};
     c.radiance = from_light->spectrum;
     c.arrival += arrival;
     if (doubtful) c.missed = 0;  // there may be as much again
-    wave.contribute();
+    suffix.contribute(c);
   }
   return true;
 }

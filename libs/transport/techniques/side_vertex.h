@@ -18,7 +18,7 @@
 #include <cmath>
 #include <limits>
 
-#include "transport/wave.h"
+#include "transport/techniques/suffix_throughput.h"
 
 namespace suite {
 
@@ -70,7 +70,6 @@ class SideVertex {
   bool begin_one(Wave& wave, const PathNode& node, Side& side, std::span<float> spectrum);
   bool fly_one(Wave& wave, Side& side, std::span<float> spectrum);
   void shine(Wave& wave, const Side& side, size_t ray, std::span<float> spectrum);
-  const PolarisedEvent* polarise(Wave& wave, const Side& side);
   std::span<float> spectrum_of(const Wave& wave, size_t i) { return {&spectra_[i * wave.bins], wave.bins}; }
 
   const SampledLight* light_ = nullptr;  // towards which there are side flights; null: there are none
@@ -250,9 +249,9 @@ void SideVertex<Wave>::shine(Wave& wave, const Side& side, size_t i, std::span<f
                  by_chance = path.other.mean(wave.P(), density, {reach, wave.knots()});
     denominator = Wave::Estimator::asked(sample.density, others > 0 ? by_chance / others : 0, light_->nature.disk);
   }
-  const std::span<float> memory = wave.dense(p, 2);
-  const Factor w = wave.space.evaluate(event, scattering_cosine(-path.direction, sample.direction), memory);
-  for (size_t k = 0; k < wave.bins; ++k) memory[k] = (w.spectrum ? w.spectrum[k] : 1.0f) * spectrum[k];
+  SuffixThroughput<Wave> suffix(wave, wave.dense(p, 2));
+  suffix.resume(spectrum, wave.nodes[side.node], path.direction);
+  const double scattered = suffix.scatter_apart(event, -path.direction, sample.direction);
   const float* radiance = sample.spectrum;
   if (!radiance) {
     const std::span<float> own = wave.dense(p);
@@ -265,31 +264,10 @@ void SideVertex<Wave>::shine(Wave& wave, const Side& side, size_t i, std::span<f
   c.order += 1;
   c.asked = true, c.beam = light_->beam;
   if (wave.waters.any()) c.water = Waters::behind_scattering(Waters::behind_scattering(wave.paths[p].water));
-  c.scale = static_cast<float>(side.scale * w.scale * sample.scale / denominator * alone(wave, path));
-  c.factor = {1, memory.data()};
+  c.scale = static_cast<float>(side.scale * scattered * sample.scale / denominator * alone(wave, path));
   c.radiance = radiance;
   c.arrival += wave.space.optical_way(p, i, side.flight.length);
-  if constexpr (Wave::kStokes) c.polarised = polarise(wave, side);
-  wave.contribute();
-  if constexpr (Wave::kStokes) wave.hand_over();
-}
-
-// Of a side flight: what the node makes of the light from there times what the place there makes of its light.
-template <class Wave>
-const PolarisedEvent* SideVertex<Wave>::polarise(Wave& wave, const Side& side) {
-  const PathNode& node = wave.nodes[side.node];
-  wave.polarise(node, side.path.direction);
-  wave.polarisation.aside.resize(wave.bins);
-  const auto of = wave.space.mueller(wave.space.side(node.path), -side.path.direction, side.sample.direction,
-                                     wave.polarisation.aside);
-  const bool grey = wave.polarisation.event.matrices.size() == 1, all = grey && of.grey;
-  const Mueller first = wave.polarisation.matrices[0];
-  for (size_t i = 0; i < (all ? 1 : wave.bins); ++i)
-    wave.polarisation.matrices[i] =
-        (grey ? first : wave.polarisation.matrices[i]) * wave.polarisation.aside[of.grey ? 0 : i];
-  const float unknown = 1 - (1 - wave.polarisation.event.unknown) * (1 - static_cast<float>(of.unknown));
-  wave.polarisation.event = {{wave.polarisation.matrices.data(), all ? 1 : wave.bins}, unknown};
-  return &wave.polarisation.event;
+  suffix.contribute(c);
 }
 
 }  // namespace suite

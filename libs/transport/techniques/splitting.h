@@ -53,7 +53,7 @@ class Splitting {
     Path path;
     typename Wave::Space::Around around;
     LastAsked last;
-    std::vector<float> throughput;
+    typename Wave::Throughputs::Kept throughput;
     uint32_t times;  // > 0: that many parts of a path are still to come
   };
   struct Branches {
@@ -71,9 +71,10 @@ class Splitting {
   template <class GoOn>
   void branch(Wave& wave, size_t i, const Continuation& on, const GoOn& go_on);
 
-  std::vector<Branches> kept_;            // [path]
-  typename Wave::Space::Around around_;   // scratch
-  std::vector<float> throughput_before_;  // scratch
+  std::vector<Branches> kept_;  // [path]
+  // Scratch: what a path was at its node.
+  typename Wave::Space::Around around_;
+  typename Wave::Throughputs::Kept throughput_before_;
 };
 
 // Where media do not scatter paths.
@@ -99,9 +100,7 @@ void Splitting<Wave>::keep(Wave& wave, uint32_t p, double share, uint32_t times)
   to.around = wave.space.around(p);
   if (!wave.last.empty()) to.last = wave.last[p];
   to.times = times;
-  const std::span<const float> T = wave.throughputs.throughput(p);
-  to.throughput.resize(wave.bins);
-  for (size_t i = 0; i < wave.bins; ++i) to.throughput[i] = static_cast<float>(share) * T[i];
+  wave.throughputs.keep(p, static_cast<float>(share), to.throughput);
 }
 
 // Goes on with the last branch kept of a path that has ended; false when there is none.
@@ -167,8 +166,7 @@ void Splitting<Wave>::branch(Wave& wave, size_t i, const Continuation& on, const
   const uint32_t p = wave.nodes[i].path;
   const Path before = wave.paths[p];
   around_ = wave.space.around(p);
-  const std::span<const float> T = wave.throughputs.throughput(p);
-  throughput_before_.assign(T.begin(), T.end());
+  wave.throughputs.keep(p, 1, throughput_before_);
   wave.paths[p].stream = SampleStream(hash_of(before.stream.key(), kPurpose), 0);
   if (go_on(i, on)) keep(wave, p, 1, 0);
   wave.paths[p] = before;

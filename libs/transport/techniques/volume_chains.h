@@ -89,8 +89,10 @@ class VolumeChains {
   // By what scattering i of the chain is put on its way of `most` m, at knot k.
   LinkPlace link_place(const Wave& wave, const Manifold<Wave>& manifold, const RefractedQuestion& q, size_t i,
                        double most, size_t k) const;
-  // What link i of the chain, where its way has come to, makes of light that comes from a direction.
-  void scatter_along(Wave& wave, size_t i, Dir from, std::span<float> through, std::span<float> memory);
+  // Link i of the chain, where its way has come to, scatters light that comes from a direction.
+  void scatter_along(Wave& wave, size_t i, Dir from, SuffixThroughput<Wave>& suffix) const {
+    suffix.scatter(wave.space.stand_on_way(), -chain_.toward[i], from, chain_.density[i]);
+  }
   // Looks for the light from the last place.
   bool shine_behind_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, size_t knot, Vec3 place,
                           double scale, double arrival);
@@ -103,7 +105,9 @@ class VolumeChains {
   bool on_ = false;
   std::vector<NodeClaims> claims_;  // of nodes; empty where nothing refracts
   Chain chain_;
+  // What the node and all links but the last make of the light.
   std::vector<float> through_;
+  typename Wave::Matrices matrices_;
 };
 
 // Where media do not scatter paths.
@@ -211,10 +215,9 @@ bool VolumeChains<Wave>::follow_chain(Wave& wave, Manifold<Wave>& manifold, cons
   const Hit& hit = wave.hits[node.slot];
   if (!node.event && !wave.surfaces.takes(p, hit, -path.direction, chain.toward[0])) return false;
   through_.resize(wave.bins);
-  const std::span<float> through = through_, memory = wave.dense(p);
-  const Factor factor = wave.evaluate(node, chain.toward[0], memory);
-  for (size_t i = 0; i < wave.bins; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
-  manifold.keep_bins_of(wave, knot, through);
+  SuffixThroughput<Wave> suffix(wave, through_);
+  suffix.leave(node, chain.toward[0]);
+  manifold.keep_bins_of(wave, knot, suffix);
   wave.space.begin_way(p, node.event, hit, node.event ? kNone : wave.surfaces.material(p), -path.direction,
                        chain.toward[0]);
   double arrival = 0;
@@ -222,7 +225,7 @@ bool VolumeChains<Wave>::follow_chain(Wave& wave, Manifold<Wave>& manifold, cons
   for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
     ray.direction = chain.toward[i];
     const double most = std::min(free_way(wave, ray), claims_[q.node].reach());
-    if (!(most > 0)) return wave.throughputs.give_back(p), false;
+    if (!(most > 0)) return false;
     const std::array<double, 4> u =
         chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
     const auto own = static_cast<size_t>(path.knot);
@@ -232,17 +235,17 @@ bool VolumeChains<Wave>::follow_chain(Wave& wave, Manifold<Wave>& manifold, cons
       return link_place(wave, manifold, q, i, most, k).density(at.share) * at.change;
     };
     const double density = density_at(own);
-    if (!(density > 0)) return wave.throughputs.give_back(p), false;
+    if (!(density > 0)) return false;
     double of_place[kMaxKnots];
     for (size_t k = 0; k < wave.knots(); ++k) of_place[k] = density_at(k);
     chain.share.take(wave.knots(), of_place, density);
     // At once: 24 ways of 100 m each, and as many coefficients of 0.01 1/m, do not fit into floats.
-    for (size_t b = 0; b < wave.bins; ++b) through[b] *= static_cast<float>(most / density);
-    arrival += x * most * wave.space.follow_way(ray, x * most, through, wave.transmission);
+    suffix.weaken(static_cast<float>(most / density));
+    arrival += x * most * suffix.follow(ray, x * most);
     ray.origin += ray.direction * (x * most);
-    if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(wave, i, chain.toward[i + 1], through, memory);
+    if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(wave, i, chain.toward[i + 1], suffix);
   }
-  wave.throughputs.give_back(p);
+  matrices_.begin(suffix.matrices());
   wave.space.hold_way();
   return shine_behind_chain(wave, manifold, q, knot, ray.origin, 1 / chain.share.mean(wave.P()), arrival);
 }
@@ -277,11 +280,11 @@ bool VolumeChains<Wave>::shine_behind_chain(Wave& wave, Manifold<Wave>& manifold
   const auto ways = q.sky ? manifold.sight().first_through_sheet(from, q.end.direction, knot)
                           : manifold.sight().find(from, q.end, knot, seed);
   for (const RefractedWay& way : ways) {
-    const std::span<float> through = wave.dense(p, 3), memory = wave.throughputs.take(p);
-    std::copy(through_.begin(), through_.end(), through.begin());
+    SuffixThroughput<Wave> suffix(wave, wave.dense(p, 2));
+    suffix.resume(through_, matrices_);
     wave.space.resume_way();
-    scatter_along(wave, links - 1, way.direction, through, memory);
-    manifold.shine_behind(wave, way, q, knot, {through, arrival, scale, links, chain_.toward[0]});
+    scatter_along(wave, links - 1, way.direction, suffix);
+    manifold.shine_behind(wave, way, q, knot, {arrival, scale, links, chain_.toward[0]}, suffix);
   }
   return true;
 }
@@ -311,14 +314,6 @@ ClaimCone VolumeChains<Wave>::cone_of(const Wave& wave, const Manifold<Wave>& ma
   Dir toward = beam ? beam->direction : Dir{0, 0, 1};
   if (manifold.sight().has_sheet()) toward = manifold.sight().sheet_guess(toward, knot).value_or(toward);
   return {false, wave.paths[node.path].direction, toward};
-}
-
-template <class Wave>
-void VolumeChains<Wave>::scatter_along(Wave& wave, size_t i, Dir from, std::span<float> through,
-                                       std::span<float> memory) {
-  const Factor w = wave.space.evaluate(wave.space.stand_on_way(), dot(chain_.toward[i], from), memory);
-  const auto scale = static_cast<float>(double{w.scale} / chain_.density[i]);
-  for (size_t b = 0; b < wave.bins; ++b) through[b] *= scale * (w.spectrum ? w.spectrum[b] : 1.0f);
 }
 
 template <class Wave>

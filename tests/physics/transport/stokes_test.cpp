@@ -268,26 +268,6 @@ TEST(Stokes, LightOfModelsWithoutMatricesIsTold) {
   }
 }
 
-// Which techniques are off is said where they would be on.
-TEST(Stokes, TechniquesWithoutMatricesAreNamed) {
-  const auto said = [](ModelSpec surface, bool stokes) {
-    std::string all;
-    JobOptions job;
-    job.progress = false;
-    job.diagnose = [&](const Diagnostic& d) { all += line_of(d) + "\n"; };
-    std::vector<std::unique_ptr<Sensor>> sensors;
-    if (stokes)
-      sensors.push_back(std::make_unique<StokesRays>(std::vector<Ray>{towards_origin(0.5)}, 4));
-    else
-      sensors.push_back(std::make_unique<RaySensor>(std::vector<Ray>{towards_origin(0.5)}, one_band(), 4));
-    run_job(scene_of({quad(100, 0, 0)}, {material("plate", std::move(surface))}), sky(false), sensors, job);
-    return all;
-  };
-  EXPECT_NE(said(dielectric(1.5), true).find("[DR208]"), std::string::npos);
-  EXPECT_EQ(said(dielectric(1.5), false).find("[DR208]"), std::string::npos);
-  EXPECT_EQ(said(lambert(0.5), true).find("[DR208]"), std::string::npos);
-}
-
 // Light scattered once by a thin layer of air: I = P11(90 deg...) tau / ..., sun at 60 deg, looked at straight down
 // (closed form, depolarisation 0.0279; Hansen & Travis 1974): I/E0 7.369816e-4, degree 0.573657.
 TEST(Stokes, AThinLayerOfAirScattersOnce) {
@@ -307,38 +287,5 @@ TEST(Stokes, AThinLayerOfAirScattersOnce) {
   EXPECT_EQ(seen.depolarised, 0);
 }
 
-// Flights aside bring, in media that scatter forwards, what chance brings without them: Stokes vectors agree, and those
-// with them take a quarter of the paths. A matrix that polarises: off-diagonal elements up to 0.6 and retardance. 16
-// numbers at 6 errors of some 14 degrees: by chance 5e-4 of seeds fail.
-TEST(Stokes, FlightsAsideBringPolarisedLight) {
-  const ModelSpec forward{"tabulated",
-                          {},
-                          {},
-                          {{"table", "0 400, 5 60, 20 4, 60 0.5, 120 0.1, 140 0.35, 160 0.15, 180 0.3"},
-                           {"matrix",
-                            "0 0 1 1 0 1, 30 -0.2 0.97 0.95 0.1 0.94, 90 -0.6 0.9 0.4 0.3 0.35, 140 0.3 0.85 -0.6 -0.3 "
-                            "-0.55, 180 0 0.7 -0.7 0 -0.4"}},
-                          nullptr};
-  const auto scene = slab_scene(medium(Curve::constant(0), Curve::constant(1), forward), 1);
-  SourceSpecs sources;
-  sources.add(SunSpec{{dir_from_angles(0.7, 0.5), 0, Curve::constant(1)}});
-  std::vector<Ray> rays;
-  for (int i = 0; i < 4; ++i) rays.push_back({{0, 0, -0.5}, dir_from_angles(0.3 + 0.2 * i, 0.8 * i), 0});
-  std::vector<StokesSeen> seen[2];
-  for (const bool aside : {false, true}) {
-    PipelineOptions options;
-    options.side_flights = aside;
-    options.seed = aside ? 1 : 2;
-    seen[aside] = see_stokes(scene, sources, rays, aside ? 1 << 14 : 1 << 16, {}, options);
-  }
-  double polarised = 0;
-  for (size_t i = 0; i < rays.size(); ++i)
-    for (size_t k = 0; k < 4; ++k) {
-      const StokesSeen &a = seen[0][i], &b = seen[1][i];
-      EXPECT_NEAR(a.S[k], b.S[k], 6 * std::hypot(a.error[k], b.error[k])) << "IQUV"[k] << " of ray " << i;
-      if (k > 0) polarised = std::max(polarised, std::fabs(b.S[k]) / (b.error[k] + 1e-12));
-    }
-  EXPECT_GT(polarised, 30) << "it is resolved";
-}
 }  // namespace
 }  // namespace suite::test
