@@ -4,6 +4,7 @@
 #include "formats/hdf5/h5.h"
 #include "formats/response/layout.h"
 #include "formats/response/response_file.h"
+#include "math/stats.h"
 
 namespace suite {
 
@@ -57,6 +58,7 @@ void put_block(h5::Writer& w, size_t number, const ResponseBlock& b, size_t chan
   w.put(in_block(number, "entries/contributions"), b.contributions, "1");
   w.put(in_block(number, "entries/value"), b.value, "photons", channels);
   w.put(in_block(number, "entries/variance"), b.variance, "photons2", channels);
+  if (!b.skewness.empty()) w.put(in_block(number, "entries/skewness"), b.skewness, "1", channels);
 }
 
 void append(ResponseBlock& to, ResponseBlock&& more) {
@@ -69,6 +71,7 @@ void append(ResponseBlock& to, ResponseBlock&& more) {
   for (size_t r = 1; r < more.begin.size(); ++r) to.begin.push_back(before + more.begin[r]);
   add(to.pulses, more.pulses), add(to.bound, more.bound), add(to.paths, more.paths), add(to.bin, more.bin);
   add(to.contributions, more.contributions), add(to.value, more.value), add(to.variance, more.variance);
+  add(to.skewness, more.skewness);
 }
 
 }  // namespace
@@ -98,6 +101,9 @@ ResponseWriter::ResponseWriter(const std::string& path, const ResponseHead& head
   std::vector<double> pixels;
   for (const Dir& d : head.pixels) pixels.insert(pixels.end(), {d.x, d.y, d.z});
   w.put("/pixels", pixels, "1", 3);
+  if (head.scrambles > 0)
+    w.put(kScrambles,
+          std::vector<double>{static_cast<double>(head.scrambles), student_t_quantile(0.95, head.scrambles - 1)}, "1");
 }
 
 ResponseWriter::~ResponseWriter() = default;

@@ -42,19 +42,18 @@ void RangeBins::passive(int scramble, double photons, bool multiple, size_t tag)
 
 void RangeBins::end_row(ResponseBlock& block) {
   const double n = scrambles_;
+  std::vector<double> each(static_cast<size_t>(scrambles_));
   for (const auto& [bin, cell] : cells_) {
     block.bin.push_back(bin);
     block.contributions.push_back(cell.contributions);
     for (size_t c = 0; c < head_.channels.size(); ++c) {
       double sum = 0, squares = 0;
-      for (size_t s = 0; s < static_cast<size_t>(scrambles_); ++s) sum += cell.sums[s * head_.channels.size() + c];
+      for (size_t s = 0; s < each.size(); ++s) sum += each[s] = cell.sums[s * head_.channels.size() + c];
       const double mean = sum / n;
-      for (size_t s = 0; s < static_cast<size_t>(scrambles_); ++s) {
-        const double off = cell.sums[s * head_.channels.size() + c] - mean;
-        squares += off * off;
-      }
+      for (const double value : each) squares += (value - mean) * (value - mean);
       block.value.push_back(mean);
       block.variance.push_back(squares / (n * (n - 1)));
+      block.skewness.push_back(static_cast<float>(skewness_of(each)));
     }
   }
   block.begin.push_back(block.bin.size());

@@ -140,6 +140,11 @@ void PulseRows::start(Job& job, const SensorRay& ray, const SampleStream& stream
   if (job.waiting == kWave) job.finish(plan_.tracer, report);
 }
 
+// Paths that leave the laser look for all pixels.
+void PulseRows::add_path(std::span<RangeBins> rows) {
+  for (RangeBins& row : rows) row.add_paths(1);
+}
+
 // Scramble s of n paths has those that are left over by one each from the first on.
 void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseReport& report) {
   const size_t pixels = range.last_pixel - range.first_pixel;
@@ -160,7 +165,7 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
           SensorRay ray =
               from_laser ? this->from_laser(pulse, stream, sample, u) : from_receiver(job, pulse, pixel, u, lane);
           lane.active /= count, lane.passive /= count;
-          row->add_paths(job.active ? 1 : 0);
+          if (job.active) add_path(from_laser ? std::span(rows_).subspan(k * pixels, pixels) : std::span(row, 1));
           if (lane.active == 0 && lane.passive == 0) continue;
           ray.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));  // as the kernel's path has it
           if (once_ && lane.active > 0)

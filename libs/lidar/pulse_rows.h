@@ -46,6 +46,7 @@ class PulseRows {
   struct Job;  // one kernel and what it needs
   std::unique_ptr<Job> make_job(std::shared_ptr<const Light> end, const ReceiverEnd* receiver, bool passive);
   void run(Job& job, const RowRange& range, bool from_laser, PulseReport& report);
+  static void add_path(std::span<RangeBins> rows);
   void scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray, const FirstScattering::Strata& strata,
                     RangeSink::Lane& lane);
   void start(Job& job, const SensorRay& ray, const SampleStream& stream, uint32_t sample, const RangeSink::Lane& lane,

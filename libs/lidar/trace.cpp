@@ -90,7 +90,7 @@ class Tracing {
       : scene_(std::move(scene)),
         window_(window),
         tracer_(scene_, std::nullopt, changes_in_time(*scene_) ? window : TimeSpan{}, cut_out(*scene_)),
-        head_(response_head(*scene_, instrument)),
+        head_(response_head(*scene_, instrument, options)),
         passive_(passive),
         rows_at_once_(rows_at_once(*scene_, passive, head_)),
         plan_{tracer_,
@@ -102,7 +102,7 @@ class Tracing {
               false,
               tags_of(instrument, tracer_),
               key_of(instrument.name),
-              static_cast<int>(std::min(options.scrambles, instrument.paths))} {
+              head_.scrambles} {
     plan_.laser_first = laser_first(instrument, plan_.beam, plan_.field);
     resolve_sources(passive_, *scene_, window.begin);
   }
@@ -160,6 +160,7 @@ void append(const ResponseBlock& rows, ResponseBlock& block) {
   const auto add = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
   add(rows.bound, block.bound), add(rows.paths, block.paths), add(rows.bin, block.bin);
   add(rows.contributions, block.contributions), add(rows.value, block.value), add(rows.variance, block.variance);
+  add(rows.skewness, block.skewness);
 }
 
 // A difference to an even field may leave passive light below nothing by its error.
@@ -240,9 +241,10 @@ std::vector<ResponseBlock> Tracing::trace(uint64_t first, uint64_t last, PulseRe
 
 }  // namespace
 
-ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument) {
+ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument, const TraceOptions& options) {
   check(instrument);
   ResponseHead head;
+  head.scrambles = static_cast<int>(std::min(options.scrambles, instrument.paths));
   head.bin = instrument.gate.bin;
   head.bins = static_cast<uint32_t>(
       std::max(1.0, std::ceil((instrument.gate.stop - instrument.gate.start) / instrument.gate.bin * (1 - 1e-12))));

@@ -27,6 +27,10 @@
 
 namespace suite {
 
+// A laser has one place, and paths of a scene that repeats itself know theirs within the cell alone.
+inline constexpr const char *kNoPeriodicLidar = "a scene that repeats itself is not traced for laser radars",
+                            *kNoPeriodicLidarHint = "drop `periodic`, and place copies of the scene side by side";
+
 // Threads are those of base/parallel.h; results do not depend on their number.
 struct TraceOptions {
   uint64_t first = 0, count = UINT64_MAX;  // pulses of the train; what lies beyond its end is left out
@@ -52,7 +56,7 @@ struct PulseReport {
 };
 
 // What the blocks of an instrument belong to. scene: for its origin. Error: an instrument with a fault (fault_of).
-ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument);
+ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument, const TraceOptions& options = {});
 
 // Traces pulses and hands their blocks to the sink in the order of the train. A stop signal ends it between blocks by
 // Stopped (base/interrupt.h); what was handed over stays. Error: an instrument with a fault (fault_of), a scene or
