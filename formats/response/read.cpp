@@ -106,6 +106,10 @@ ResponseReader::ResponseReader(const std::string& path) : open_(std::make_unique
 
 ResponseReader::~ResponseReader() = default;
 const ResponseHead& ResponseReader::head() const { return open_->head; }
+std::optional<std::string> ResponseReader::unfinished() const {
+  if (!open_->file.has(kUnfinished)) return std::nullopt;
+  return open_->file.get_names(kUnfinished, 1)[0];
+}
 uint64_t ResponseReader::pulses() const { return open_->pulses; }
 size_t ResponseReader::blocks() const { return open_->blocks; }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 
 #include "base/files.h"
 #include "formats/hdf5/h5.h"
@@ -14,6 +15,7 @@ struct ResponseWriter::Open {
   Open(const std::string& path, const ResponseHead& h, size_t entries)
       : head(h), file(path), writer(file.temporary(), path, [](const std::string&) { return 1; }), most(entries) {}
   void flush();
+  void end();  // nothing more comes
   ResponseHead head;
   AtomicFile file;
   h5::Writer writer;
@@ -117,8 +119,8 @@ void ResponseWriter::take(ResponseBlock&& block) {
   if (open_->kept.entries() >= open_->most || open_->kept.row_count() >= open_->most) open_->flush();
 }
 
-void ResponseWriter::finish() {
-  Open& o = *open_;
+void ResponseWriter::Open::end() {
+  Open& o = *this;
   o.flush();
   const double numbers[8] = {o.head.bin,
                              static_cast<double>(o.head.bins),
@@ -130,7 +132,19 @@ void ResponseWriter::finish() {
                              static_cast<double>(o.pulses)};
   o.writer.attribute(kBins, numbers);
   o.writer.close();
-  o.file.commit();
+}
+
+void ResponseWriter::finish() {
+  open_->end();
+  open_->file.commit();
+}
+
+void ResponseWriter::leave(const std::string& path, const std::string& identity) {
+  open_->writer.put_names(kUnfinished, {identity});
+  open_->end();
+  std::error_code failed;
+  std::filesystem::rename(open_->file.temporary(), path, failed);
+  if (failed) throw Error(Where{path, 0, 0, {}, -1}, "cannot be written: " + failed.message());
 }
 
 }  // namespace suite

@@ -12,8 +12,9 @@
 // water is seen by single scattering. Light that smooth surfaces alone bring back (corner cubes) is not found.
 // Arrival is the optical path with the group index of the matter on it, where that is known, else its phase index; the
 // air counts as vacuum, in arrivals and in ResponseHead::group_index alike.
-// Assumes: reciprocal surfaces; an aperture and a laser that are points but for the beam's waist; spectra alone, no
-// polarisation; the scene stands still from the emission to the reception of a pulse; passive light is even over the
+// A polarised laser and analysers (LidarReceiver) have paths carry Mueller matrices, which begin at the receiver; smooth
+// interfaces are then not looked through, and real air is refused.
+// Assumes: reciprocal surfaces; an aperture and a laser that are points but for the beam's waist; the scene stands still from the emission to the reception of a pulse; passive light is even over the
 // filter: it is known at the laser's line alone.
 #pragma once
 #include <functional>
@@ -49,6 +50,9 @@ struct PulseReport {
   uint64_t failures = 0;     // contributions that were no number
   double photons = 0;        // of all pulses and pixels, within the gate
   double outside = 0;        // and outside of it
+  double met = 0;            // light of the laser that paths found, in sums of scrambles
+  // Share of it whose polarisation is not known and counts as none (docs/theory/polarisation.md).
+  double unknown_polarisation = 0;
   double truncated = 0;      // share of the light that was cut at the last order, at most
   bool laser_first = false;  // where paths began
   bool passive = false;      // there is light in bin 0
@@ -58,7 +62,8 @@ struct PulseReport {
 // What the blocks of an instrument belong to. scene: for its origin. Error: an instrument with a fault (fault_of).
 ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument, const TraceOptions& options = {});
 
-// Traces pulses and hands their blocks to the sink in the order of the train. A stop signal ends it between blocks by
+// Traces pulses and hands their blocks to the sink in the order of the train; they are numbered (first_pulse) by those
+// at which a beam leaves. Bits do not depend on which part of the train is traced in one go. A stop signal ends it between blocks by
 // Stopped (base/interrupt.h); what was handed over stays. Error: an instrument with a fault (fault_of), a scene or
 // sources that cannot be baked for the laser's wavelength, motions that do not cover the pulses.
 PulseReport trace_pulses(const std::shared_ptr<const Scene>& scene, const SourceSpecs& passive,

@@ -318,8 +318,11 @@ TEST(LidarErrors, FaultsAreTold) {
   lidar.receiver.rows = 4, lidar.receiver.pitch = 1e-5, lidar.receiver.focal = 0.1, lidar.receiver.columns = 4000000;
   EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("at most 1e7"), std::string::npos);
   lidar.receiver.columns = 0;
-  lidar.laser.stokes = {1, 1, 0, 0};
-  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("polarisation is not traced"), std::string::npos);
+  lidar.laser.stokes = {1, 1, 0.5, 0};
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("Q2 + U2 + V2 at most 1"), std::string::npos);
+  lidar.laser.stokes = {1, 1, 0, 0}, lidar.start_from = StartFrom::laser;
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("begin at the receiver"), std::string::npos);
+  lidar.start_from = StartFrom::automatic;
   lidar.laser.stokes = {1, 0, 0, 0};
   lidar.tags = {"roof"};
   EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("no tag and no material 'roof'"), std::string::npos);

@@ -87,7 +87,9 @@ std::shared_ptr<Scene> single_leaves(uint64_t seed, double radius, double half, 
   Pcg32 random(seed);
   auto scene = std::make_shared<Scene>();
   scene->materials = {material("soil", lambert(0.2)), material("leaf", leaf)};
-  scene->meshes = {quad(1000, 0, 0)};
+  // Hits are known to 1e-7 of what they lie on. A ground of 1 km moves the way back by 0.1 mm off the way out, and of
+  // 1e4 leaves a square metre some edges lie between them: 3 % of the canopy's light would be lost.
+  scene->meshes = {quad(5, 0, 0)};
   scene->groups.push_back({"root", {}});
   scene->groups[0].placements.push_back({});
   const auto leaves = static_cast<int>(kIndex * 4 * half * half / (kPi * radius * radius) + random.uniform());
@@ -118,11 +120,17 @@ TEST(HotSpot, SingleLeavesAreTheSameOnAverage) {
   EXPECT_GT(ground_return.mean() - 4 * ground_return.stderr_of_mean(), bare * std::exp(-2 * kProjection * kIndex));
 }
 
-// The same leaves as matter, in a box from kLow to kLow + kTop.
+// The same leaves as matter, from kLow to kLow + kTop.
 std::shared_ptr<Scene> layer_of_leaves(const std::string& phase) {
   const std::shared_ptr<Scene> like = matter_of_leaves(phase);
-  auto scene = scene_of({quad(1000, 0, 0), box({-50, -50, kLow}, {50, 50, kLow + kTop}, 1, true)}, {});
-  scene->materials = like->materials, scene->media = like->media;
+  auto scene = scene_of({quad(1000, 0, 0)}, {like->materials[0]});
+  Medium nothing;
+  nothing.id = "void";
+  nothing.priority = 1;
+  scene->media = {like->media[0], nothing};
+  scene->materials.push_back(boundary(0)), scene->materials.push_back(boundary(1));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 1, translation({0, 0, kLow + kTop}));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 2, translation({0, 0, kLow}));
   check_scene(*scene, "layer");
   return scene;
 }
