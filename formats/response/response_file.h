@@ -17,8 +17,8 @@ class ResponseWriter : public ResponseSink {
   // The pulses that follow those before. Error: not writable, the disk is full.
   void take(ResponseBlock&& block) override;
   void finish();  // the file is there from now on, whole
-  // In place of finish(): what was taken so far is left under another name. identity: of what was asked for, to be known
-  // again (ResponseReader::unfinished).
+  // In place of finish(): what was taken so far is left under another name. identity: of what was asked for, to be
+  // known again (ResponseReader::unfinished).
   void leave(const std::string& path, const std::string& identity);
 
  private:

@@ -54,8 +54,7 @@ std::optional<LightSample> LaserEnd::sample(const LightReceiver& at, const std::
   if (stokes_) {
     last_ = (last_ + 1) % given_.size();
     const Dir way = -s->direction;
-    given_[last_] =
-        frame_rotation(frame_about(way, pulse->laser.vector({1, 0, 0})), meridian_frame(way).e1) * *stokes_;
+    given_[last_] = frame_rotation(frame_about(way, pulse->laser.vector({1, 0, 0})), meridian_frame(way).e1) * *stokes_;
   }
   s->spectrum = &ones_[last_ * bins_];
   return s;

@@ -58,7 +58,7 @@ class FirstScattering {
   // scattered anyway, or nothing scatters.
   struct Onward {
     Ray ray;
-    double weight, arrival;  // arrival: m up to there
+    double weight, arrival;                   // arrival: m up to there
     Mueller scattered = Mueller::identity();  // over its m11, where polarisation is asked for
   };
   std::optional<Onward> go_on(const Ray& ray, const std::array<double, 4>& u);

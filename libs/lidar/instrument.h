@@ -46,11 +46,11 @@ struct LaserSpec {
 };
 
 struct LidarReceiver {
-  double aperture = 0.1;    // m, diameter, > 0
-  double obscuration = 0;   // share of the aperture's area that is covered, 0..1
-  double throughput = 1;    // of the optics, 0..1
-  double filter_um = 1e-3;  // full width of the filter about the laser's line, for passive light
-  Pose offset;              // from the receiver's frame to the body's
+  double aperture = 0.1;            // m, diameter, > 0
+  double obscuration = 0;           // share of the aperture's area that is covered, 0..1
+  double throughput = 1;            // of the optics, 0..1
+  double filter_um = 1e-3;          // full width of the filter about the laser's line, for passive light
+  Pose offset;                      // from the receiver's frame to the body's
   std::vector<Analyser> analysers;  // each a channel
   // One detector behind a field stop: the full angle. With an array (columns > 0): pixels of `pitch` behind `focal`.
   double field_of_view = 1e-3;  // rad, above 0, at most 2

@@ -44,23 +44,25 @@ struct PulseRows::Job {
       uint32_t orders, bool without_first, const Asked& asked)
       : environment(std::move(lit)),
         options(asked.polarised ? for_stokes(method) : method),
-        context{kit.surface, kit.optics, environment, options, asked.tags},
+        context{kit.surface, kit.optics, environment, options, asked.tags,
+                false,       true,       false,       nullptr, asked.polarised},
         end(end_),
         sink(kWave, end, receiver, orders, without_first),
+        kernel(make(asked)),
         passive(asked.passive),
         active(asked.active),
-        scatters(choose_kernel(context).in_media()) {
-    const size_t bins = kit.optics.state().size();
-    context.stokes = asked.polarised;
+        scatters(choose_kernel(context).in_media()) {}
+
+  std::unique_ptr<PathTracing> make(const Asked& asked) {
+    const size_t bins = context.optics.state().size();
     const KernelChoice choice = choose_kernel(context);
-    if (asked.polarised) {
-      stokes = std::make_unique<StokesThroughputs>(kWave, bins, 1);
-      stokes_sink = std::make_unique<StokesRangeSink>(sink, asked.laser);
-      kernel = make_stokes_kernel(choice, context, kWave, *stokes, *stokes_sink);
-    } else {
+    if (!asked.polarised) {
       spectral = std::make_unique<SpectralThroughputs>(kWave, bins, 1);
-      kernel = make_kernel(choice, context, kWave, *spectral, sink);
+      return make_kernel(choice, context, kWave, *spectral, sink);
     }
+    stokes = std::make_unique<StokesThroughputs>(kWave, bins, 1);
+    stokes_sink = std::make_unique<StokesRangeSink>(sink, asked.laser);
+    return make_stokes_kernel(choice, context, kWave, *stokes, *stokes_sink);
   }
 
   void begin(uint32_t p, const Mueller& sensor) {
@@ -130,7 +132,8 @@ auto PulseRows::make_job(const End& end, bool passive) -> std::unique_ptr<Job> {
                                    Job::Asked{tags, passive, active, plan_.polarised, end.laser});
   job->sink.serve(*job->kernel);
   if (plan_.polarised)
-    job->sink.analyse(plan_.instrument.receiver.analysers, plan_.head.channels.size() - plan_.instrument.receiver.analysers.size());
+    job->sink.analyse(plan_.instrument.receiver.analysers,
+                      plan_.head.channels.size() - plan_.instrument.receiver.analysers.size());
   if (tags) job->sink.tell_apart(plan_.tags);
   return job;
 }

@@ -131,8 +131,8 @@ TEST(LidarEnds, AgreeOverACloud) {
 // (Cox & Munk 1954), whichever end begins: U = 7 m/s, n = 1.338.
 TEST(LidarEnds, TheSeaSendsItsGlitterBack) {
   auto scene = std::make_shared<Scene>();
-  scene->materials = {material(
-      "sea", {"sea", {{"wind_m_s", 7}, {"whitecaps", 0}}, {{"index", Curve::constant(1.338)}}, {}, nullptr})};
+  scene->materials = {
+      material("sea", {"sea", {{"wind_m_s", 7}, {"whitecaps", 0}}, {{"index", Curve::constant(1.338)}}, {}, nullptr})};
   place(*scene, PrimitiveKind::plane, {0, 0}, 0);
   check_scene(*scene, "sea");
   const double H = 1000;

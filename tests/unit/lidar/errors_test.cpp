@@ -16,8 +16,8 @@ std::shared_ptr<Scene> plate(double reflectance, double half = 1000) {
   return scene_of({quad(half, 0, 0)}, {material("plate", lambert(reflectance))});
 }
 
-// Over many rows, each an experiment of its own: how often the 95 % interval of a bin holds the mean of all rows. Of all
-// light and of both channels apart, bins with at least 30 contributions.
+// Over many rows, each an experiment of its own: how often the 95 % interval of a bin holds the mean of all rows. Of
+// all light and of both channels apart, bins with at least 30 contributions.
 struct Covered {
   int intervals = 0, held = 0, student = 0;  // student: by so many standard errors to either side
   double share() const { return static_cast<double>(held) / intervals; }
@@ -95,8 +95,8 @@ DownLidar in_room(uint64_t pulses, uint32_t paths, double bin) {
 }
 
 // With n intervals of 95 % the share has a standard deviation of sqrt(0.05 0.95 / n), times some for bins that share
-// paths; thousands of intervals are compared. Multiple scattering is so skewed that Student's interval does not cover it
-// (negative control).
+// paths; thousands of intervals are compared. Multiple scattering is so skewed that Student's interval does not cover
+// it (negative control).
 TEST(LidarErrors, IntervalsCoverWhatTheySay) {
   const auto fog = slab_scene(medium(Curve::constant(0.05), Curve::constant(0.4), hg(0.3)), 6);
   const struct {
@@ -111,8 +111,8 @@ TEST(LidarErrors, IntervalsCoverWhatTheySay) {
     for (const Of what : {Of::all_light, Of::single, Of::multiple}) {
       const Covered n = covered(got, what);
       if (n.intervals < 500) continue;
-      std::printf("%s %d: %.4f of %d intervals, Student's %.4f\n", c.name, static_cast<int>(what), n.share(), n.intervals,
-                  static_cast<double>(n.student) / n.intervals);
+      std::printf("%s %d: %.4f of %d intervals, Student's %.4f\n", c.name, static_cast<int>(what), n.share(),
+                  n.intervals, static_cast<double>(n.student) / n.intervals);
       EXPECT_GT(n.share(), 0.93) << c.name << " " << n.intervals;
       EXPECT_LT(n.share(), 0.97) << c.name << " " << n.intervals;
       if (what == Of::multiple && c.scene != cases[0].scene) {

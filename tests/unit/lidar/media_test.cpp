@@ -187,8 +187,8 @@ void check_half_space(const HalfSpace& c, double within) {
   const RunningStats rows = got.rows();
   const double error = rows.stderr_of_mean() / unit;
   if (within > 0) {
-    std::printf("albedo %g at %g: %.7g +- %.2g, expected %.7g (%+.3f %%)\n", c.albedo, c.mu_0, rows.mean() / unit, error,
-                c.expected, 100 * (rows.mean() / unit / c.expected - 1));
+    std::printf("albedo %g at %g: %.7g +- %.2g, expected %.7g (%+.3f %%)\n", c.albedo, c.mu_0, rows.mean() / unit,
+                error, c.expected, 100 * (rows.mean() / unit / c.expected - 1));
     EXPECT_LT(3 * error, within * c.expected) << "the bound is that of the noise";
     EXPECT_NEAR(rows.mean() / unit, c.expected, within * c.expected) << c.albedo;
   } else {
@@ -200,18 +200,24 @@ void check_half_space(const HalfSpace& c, double within) {
 }
 
 TEST(LidarMedia, AHalfSpaceReturnsItsReflectance) {
-  for (const HalfSpace& c : {HalfSpace{1, 0.5, 0.0311476, 64, 512, 64}, {1, 0.9, 0.1225723, 400, 1024, 64},
-                             {1, 0.99, 0.2408634, 4000, 256, 64}, {1, 1, 0.3364282, 1000000, 16, 64}})
+  for (const HalfSpace& c : {HalfSpace{1, 0.5, 0.0311476, 64, 512, 64},
+                             {1, 0.9, 0.1225723, 400, 1024, 64},
+                             {1, 0.99, 0.2408634, 4000, 256, 64},
+                             {1, 1, 0.3364282, 1000000, 16, 64}})
     check_half_space(c, 0);
 }
 
 // Four albedos, two slants, within 0.5 % that are known to a third of that.
 TEST(LidarMedia, HalfSpacesToHalfAPercent) {
   if (!std::getenv("SUITE_LONG")) GTEST_SKIP() << "in the long run";
-  for (const HalfSpace& c : {HalfSpace{1, 0.5, 0.0311476, 64, 1024, 256}, {1, 0.9, 0.1225723, 400, 1024, 512},
-                             {1, 0.99, 0.2408634, 4000, 1024, 512}, {1, 1, 0.3364282, 1000000, 512, 512},
-                             {0.5, 0.5, 0.0394217, 64, 1024, 256}, {0.5, 0.9, 0.1374533, 400, 1024, 512},
-                             {0.5, 0.99, 0.2400850, 4000, 1024, 512}, {0.5, 1, 0.3104996, 1000000, 512, 512}})
+  for (const HalfSpace& c : {HalfSpace{1, 0.5, 0.0311476, 64, 1024, 256},
+                             {1, 0.9, 0.1225723, 400, 1024, 512},
+                             {1, 0.99, 0.2408634, 4000, 1024, 512},
+                             {1, 1, 0.3364282, 1000000, 512, 512},
+                             {0.5, 0.5, 0.0394217, 64, 1024, 256},
+                             {0.5, 0.9, 0.1374533, 400, 1024, 512},
+                             {0.5, 0.99, 0.2400850, 4000, 1024, 512},
+                             {0.5, 1, 0.3104996, 1000000, 512, 512}})
     check_half_space(c, 5e-3);
 }
 

@@ -31,8 +31,8 @@ DownLidar above(double height, const std::array<double, 4>& stokes, std::vector<
 // Photons of channel 2 + a over those of all light.
 double share(const Received& got, int a) { return got.total(2 + a).photons / got.total().photons; }
 
-// Molecules with a depolarisation factor of 0.0279: P11 = 1.4793629, P22 = 1.4380887, P44 = -1.3968139 straight back, so
-// that (P11 - P22) / (P11 + P22) = 0.0141474 of a linear laser comes back crossed, and (P11 + P44) / (P11 - P44) =
+// Molecules with a depolarisation factor of 0.0279: P11 = 1.4793629, P22 = 1.4380887, P44 = -1.3968139 straight back,
+// so that (P11 - P22) / (P11 + P22) = 0.0141474 of a linear laser comes back crossed, and (P11 + P44) / (P11 - P44) =
 // 0.0287009 of a circular one with the turn kept. (Q, U and V of what comes back: U and V turn the other way.)
 TEST(LidarPolarised, MoleculesDepolarise) {
   const auto scene = gas(rayleigh(0.0279));
