@@ -1,5 +1,7 @@
 #include "detect_job.h"
 
+#include <limits>
+
 #include "base/files.h"
 #include "base/run_app.h"
 #include "formats/pulse/pulse.h"
@@ -15,6 +17,19 @@ DetectJob::DetectJob(const Params& text, DetectionSpec spec, const ResponseHead&
     count(p);
     for (const auto& output : outputs_) output->take(p);
   });
+}
+
+void DetectJob::rehearse(double start) const {
+  const size_t pixels = head_.pixel_count();
+  ResponseBlock dark;
+  dark.pulses.resize(1);
+  dark.pulses[0].start = start;
+  dark.begin.assign(pixels + 1, 0);
+  dark.bound.assign(pixels, std::numeric_limits<double>::quiet_NaN());
+  dark.paths.assign(pixels, 0);
+  DetectionRun run(head_, spec_, [](DetectedPulse&&) {});
+  run.take(std::move(dark));
+  run.finish();
 }
 
 void DetectJob::take(ResponseBlock&& block) { run_->take(std::move(block)); }

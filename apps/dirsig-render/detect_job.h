@@ -21,6 +21,9 @@ class DetectJob : public ResponseSink {
   };
   // text: has `output`, `las`, `csv`. Located Errors, before anything is written.
   DetectJob(const Params& text, DetectionSpec spec, const ResponseHead& head, Place place);
+  // Detects a pulse of which nothing comes back: what is too much for a detector is refused before pulses are traced.
+  // start: s after the emission, where range bin 1 begins.
+  void rehearse(double start) const;
   void take(ResponseBlock&& block) override;
   void end_pulses();  // the last one is detected
   // Files are there from now on; writes detect.json and tells how many returns there are.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "base/diagnostics.h"
 #include "base/files.h"
@@ -13,6 +14,7 @@
 #include "base/progress.h"
 #include "base/run_app.h"
 #include "base/stopwatch.h"
+#include "continued.h"
 #include "detect_job.h"
 #include "formats/response/response_file.h"
 #include "guard.h"
@@ -33,6 +35,11 @@ struct LidarJobs::Job {
   std::unique_ptr<DetectJob> detect;
   std::optional<PulseReport> report;
   double seconds = 0;
+  // The error at the laser radar's place in the text, unless it has one.
+  Error located(const Error& e) const {
+    if (!e.where().file.empty()) return e;
+    return Error(of.where, "laser radar '" + of.instrument.name + "': " + e.message(), e.hint(), e.code());
+  }
 };
 
 namespace {
@@ -40,11 +47,16 @@ namespace {
 void check_lidar_usage(const Cli& cli, const Simulation& sim) {
   // Nothing of a run is cut or continued; and what is of images says nothing where there are none.
   for (const char* option :
-       {"--time", "--state", "--resume", "--more", "--part", "--merge", "--plan", "--study", "--ranks", "--link"})
+       {"--time", "--state", "--more", "--part", "--merge", "--plan", "--study", "--ranks", "--link"})
     if (cli.given(option))
       throw UsageError(std::string(option) +
                        " does not go with laser radars: take them out of the text, or leave it out");
-  if (!sim.sensors.empty()) return;
+  if (!sim.sensors.empty()) {
+    if (cli.given("--resume"))
+      throw UsageError(
+          "--resume goes on with laser radars where they are alone: take the other sensors out of the text");
+    return;
+  }
   if (sim.heat) throw UsageError("the simulation has `heat`, which images need, and laser radars only");
   for (const char* option :
        {"--target-error", "--target-floor", "--target-bands", "--stop", "--method", "--cache-memory", "--memory",
@@ -111,8 +123,7 @@ LidarJobs::LidarJobs(const Cli& cli, const RenderOptions& options, Simulation& s
   if (sim.lidars.empty()) return;
   check_lidar_usage(cli, sim);
   if (several_ranks) throw UsageError("laser radars run in one process: start it without mpirun");
-  if (sim.periodic)
-    throw Error(sim.periodic_where, "a scene that repeats itself is not traced for laser radars", "drop `periodic`");
+  if (sim.periodic) throw Error(sim.periodic_where, kNoPeriodicLidar, kNoPeriodicLidarHint);
   set_paths(options, sim);
   for (const SimulationLidar& l : sim.lidars) {
     const auto& train = dynamic_cast<const ClockedTrain&>(*l.instrument.pulses);
@@ -143,6 +154,11 @@ void LidarJobs::check(const std::shared_ptr<const Scene>& scene) {
       job->detect = std::make_unique<DetectJob>(
           *i.detection, std::move(*job->detection), job->head,
           DetectJob::Place{in_folder(options_.output, i.name), response_file(options_, i), job->pulses});
+    if (job->detect) try {
+        job->detect->rehearse(i.gate.start);
+      } catch (const Error& e) {
+        throw job->located(e);
+      }
   }
   if (simulation_.unread) simulation_.unread->reject_unread();
 }
@@ -162,40 +178,90 @@ void LidarJobs::forecast() const {
   }
 }
 
-bool LidarJobs::run(const std::shared_ptr<const Scene>& scene) {
-  const StopInGoodOrder signals;
-  for (const auto& job : jobs_) {
-    const LidarInstrument& i = job->of.instrument;
-    const Stopwatch::time_point begun = Stopwatch::now();
-    if (job->detect) make_folder(in_folder(options_.output, i.name));
-    const TimeSpan span = job->train.span();
-    SourcesInTime sources(simulation_.sources, *scene);
-    ResponseWriter writer(response_file(options_, i), job->head, command_line());
-    Tee tee(writer, job->detect.get());
-    Progress progress("laser radar '" + i.name + "'", static_cast<double>(job->pulses), "pulse");
-    TraceOptions options;
-    options.seed = simulation_.pipeline.seed, options.method = simulation_.pipeline, options.progress = &progress;
-    try {
-      job->report = trace_pulses(scene, sources.at(0.5 * (span.begin + span.end)), i, options, tee);
-      if (job->detect) job->detect->end_pulses();
-    } catch (const Stopped&) {
-      note("laser radar '" + i.name + "': stopped, none of its responses is kept");
-      return false;
-    } catch (const Error& e) {
-      throw e.where().file.empty()
-          ? Error(job->of.where, "laser radar '" + i.name + "': " + e.message(), e.hint(), e.code())
-          : e;
-    }
-    progress.finish();
+namespace {
+
+std::string unfinished_file(const RenderOptions& o, const LidarInstrument& i) {
+  return in_folder(o.output, i.name + "_response.unfinished.h5");
+}
+
+// Of a run of laser radars alone: all that its bytes depend on.
+std::string identity_text(const StateIdentity& of, const Simulation& sim) {
+  std::string all;
+  for (const auto& [what, hash] : of) all += what + "=" + hash + "\n";
+  for (const SimulationLidar& l : sim.lidars) all += strf("paths=%u\n", l.instrument.paths);
+  return sha256(all);
+}
+
+// What an interrupted run left goes through again; the shot behind it.
+uint64_t take_up(const std::string& path, const std::string& identity, const PulseTrain& train, ResponseSink& sink) {
+  const ResponseReader left(path);
+  if (left.unfinished() != identity)
+    throw Error(Where{path, 0, 0, {}, -1}, "is of another run: another text, scene, seed, number of paths or program",
+                "the command that was interrupted with --resume, or another folder with -o");
+  for (size_t b = 0; b < left.blocks(); ++b) sink.take(left.block(b));
+  uint64_t shot = 0;
+  for (uint64_t lit = 0; lit < left.pulses(); ++shot) lit += train.pulse(shot).has_value();
+  return shot;
+}
+
+}  // namespace
+
+bool LidarJobs::finished(const Job& job) const {
+  return options_.resume && file_exists(response_file(options_, job.of.instrument)) &&
+         !file_exists(unfinished_file(options_, job.of.instrument));
+}
+
+bool LidarJobs::run(Job& job, const std::shared_ptr<const Scene>& scene, const std::string& identity) {
+  const LidarInstrument& i = job.of.instrument;
+  const Stopwatch::time_point begun = Stopwatch::now();
+  if (job.detect) make_folder(in_folder(options_.output, i.name));
+  const TimeSpan span = job.train.span();
+  SourcesInTime sources(simulation_.sources, *scene);
+  ResponseWriter writer(response_file(options_, i), job.head, command_line());
+  Tee tee(writer, job.detect.get());
+  const std::string unfinished = unfinished_file(options_, i);
+  TraceOptions options;
+  if (options_.resume && file_exists(unfinished)) options.first = take_up(unfinished, identity, *i.pulses, tee);
+  Progress progress("laser radar '" + i.name + "'", static_cast<double>(job.pulses), "pulse");
+  options.seed = simulation_.pipeline.seed, options.method = simulation_.pipeline, options.progress = &progress;
+  try {
+    job.report = trace_pulses(scene, sources.at(0.5 * (span.begin + span.end)), i, options, tee);
+    if (job.detect) job.detect->end_pulses();
+  } catch (const Stopped&) {
     const FinishFirst whole;
-    writer.finish();
-    if (job->detect) job->detect->finish();
-    job->seconds = seconds_since(begun);
-    const PulseReport& r = *job->report;
-    note(strf(
-        "laser radar '%s': %s pulses, %s paths, %.6g photons within the gate, %.3g outside; paths begin at the %s",
-        i.name.c_str(), human_count(static_cast<double>(r.pulses)).c_str(),
-        human_count(static_cast<double>(r.paths)).c_str(), r.photons, r.outside, r.laser_first ? "laser" : "receiver"));
+    if (!identity.empty()) writer.leave(unfinished, identity);
+    note("laser radar '" + i.name + "': stopped" +
+         (identity.empty() ? ", none of its responses is kept" : "; --resume continues from " + unfinished));
+    return false;
+  } catch (const Error& e) {
+    throw job.located(e);
+  }
+  progress.finish();
+  const FinishFirst whole;
+  writer.finish();
+  if (job.detect) job.detect->finish();
+  std::filesystem::remove(unfinished);
+  job.seconds = seconds_since(begun);
+  const PulseReport& r = *job.report;
+  note(strf("laser radar '%s': %s pulses, %s paths, %.6g photons within the gate, %.3g outside; paths begin at the %s",
+            i.name.c_str(), human_count(static_cast<double>(r.pulses)).c_str(),
+            human_count(static_cast<double>(r.paths)).c_str(), r.photons, r.outside,
+            r.laser_first ? "laser" : "receiver"));
+  return true;
+}
+
+bool LidarJobs::run(const std::shared_ptr<const Scene>& scene, const std::string& identity) {
+  const StopInGoodOrder signals;
+  if (options_.resume && std::ranges::none_of(jobs_, [&](const auto& job) {
+        return finished(*job) || file_exists(unfinished_file(options_, job->of.instrument));
+      }))
+    throw UsageError("there is nothing to continue from in " + options_.output + ": run without --resume");
+  for (const auto& job : jobs_) {
+    if (finished(*job)) {
+      note("laser radar '" + job->of.instrument.name + "' was finished before");
+      continue;
+    }
+    if (!run(*job, scene, identity)) return false;
   }
   return true;
 }
@@ -212,7 +278,7 @@ int LidarJobs::run_alone(const std::shared_ptr<const Scene>& scene, const JobOpt
     return 0;
   }
   const RunLock lock = lock_place(options_, simulation_);
-  const bool whole = run(scene);
+  const bool whole = run(scene, identity_text(identity_of(simulation_, options), simulation_));
   write_log(in_folder(options_.output, "render.json"), {}, options, log());
   return whole ? 0 : end_by_signal("laser radars that were finished are in " + options_.output);
 }
@@ -228,6 +294,7 @@ Json LidarJobs::log() const {
     j.set("pulses", r.pulses), j.set("shots_without_a_beam", r.dark);
     j.set("rows", r.rows), j.set("paths", r.paths), j.set("rejected_contributions", r.failures);
     j.set("photons", r.photons), j.set("photons_outside_of_the_gate", r.outside), j.set("truncated", r.truncated);
+    j.set("polarisation_not_known", r.unknown_polarisation);
     j.set("paths_begin_at", r.laser_first ? "laser" : "receiver"), j.set("passive_light", r.passive),
         j.set("leaves_passed_once", r.hot_spot);
     j.set("range_bins", uint64_t{job->head.bins}), j.set("bin_ns", job->head.bin * 1e9);

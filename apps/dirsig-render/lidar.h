@@ -22,8 +22,9 @@ class LidarJobs {
   void check(const std::shared_ptr<const Scene>& scene);
   // A line for each: pulses, paths, bins, bytes.
   void forecast() const;
-  // Traces all of them. The folder is there. False: a signal has stopped it; laser radars that were finished stay.
-  bool run(const std::shared_ptr<const Scene>& scene);
+  // Traces all of them. The folder is there. False: a signal has stopped it; laser radars that were finished stay, and
+  // what was traced of the one at work. identity: of the run; empty: what was traced of that is not kept.
+  bool run(const std::shared_ptr<const Scene>& scene, const std::string& identity = {});
   // All that a simulation without other sensors asks for, the forecast of --dry-run and render.json included. Returns
   // the exit code.
   int run_alone(const std::shared_ptr<const Scene>& scene, const JobOptions& options);
@@ -32,6 +33,8 @@ class LidarJobs {
 
  private:
   struct Job;
+  bool run(Job& job, const std::shared_ptr<const Scene>& scene, const std::string& identity);
+  bool finished(const Job& job) const;
   const RenderOptions& options_;
   const Simulation& simulation_;
   std::vector<std::unique_ptr<Job>> jobs_;

@@ -18,7 +18,7 @@
 extern "C" {
 #endif
 
-#define RS_INTERFACE 2 /* of this header; grows when functions are added */
+#define RS_INTERFACE 3 /* of this header; grows when functions are added */
 enum { RS_OK = 0, RS_INPUT = 1, RS_BUG = 3 };
 
 int rs_interface(void);       /* RS_INTERFACE of the library */
@@ -130,6 +130,50 @@ const char* rs_simulation_band(const rs_simulation* simulation, size_t number, d
 int rs_simulation_radiance(const rs_simulation* simulation, size_t n, const double* origin, const double* direction,
                            const double* time, uint32_t paths, uint64_t seed, double* radiance, double* standard_error,
                            uint8_t* quality);
+
+/* ---- pulses of laser radars (interface 3) ---- */
+
+typedef struct rs_lidar rs_lidar;
+
+/* A laser radar of a simulation's text, by name; NULL: the only one. Its detectors are not read. */
+int rs_lidar_open(const char* path, const char* sensor, rs_lidar** lidar);
+void rs_lidar_close(rs_lidar* lidar); /* NULL is none */
+
+typedef struct rs_lidar_info {
+  uint64_t pulses; /* shots of the clock; at some no beam may leave the scanner */
+  uint64_t seed;   /* of the text */
+  uint32_t paths;  /* a pulse and pixel */
+  uint32_t bins;   /* of a pulse */
+  uint32_t columns, rows;
+  size_t channels;
+  double bin_s, group_index;
+} rs_lidar_info;
+void rs_lidar_describe(const rs_lidar* lidar, rs_lidar_info* info);
+const char* rs_lidar_channel(const rs_lidar* lidar, size_t number); /* NULL beyond the last */
+
+/* Traces shots [first, first + count), as far as there are so many. paths: a pulse and pixel; 0: as the text says.
+ * seed: 0 to 2^53. The bits are those of dirsig-render, for any number of threads and wherever calls begin. Not
+ * refused: no shot at all. */
+typedef struct rs_responses rs_responses;
+int rs_lidar_trace(const rs_lidar* lidar, uint64_t first, uint64_t count, uint32_t paths, uint64_t seed,
+                   rs_responses** traced);
+void rs_responses_close(rs_responses* traced); /* NULL is none */
+
+/* As in a file of responses (formats/response/FORMAT.md), pulses without a beam left out. As long as they are open. */
+typedef struct rs_response_arrays {
+  uint64_t pulses, rows, entries;
+  const double *time, *energy, *wavelength_um, *start; /* of pulses: s, J, um, s after the emission */
+  const double *emission_place, *emission_rotation;    /* pulses x 3, ENU m; x 4, w x y z */
+  const double *reception_place, *reception_rotation;
+  const uint64_t* begin;               /* rows + 1: first entry of each row, and the end */
+  const double* bound;                 /* of rows: photons; NaN = nothing is known */
+  const uint64_t* paths;               /* of rows */
+  const uint32_t *bin, *contributions; /* of entries; bin 0 = passive light */
+  const double *value, *variance;      /* entries x channels: photons */
+  const float* skewness;               /* entries x channels: of the scrambles */
+  double scrambles, student;           /* their number, Student's quantile at 95 % */
+} rs_response_arrays;
+void rs_responses_describe(const rs_responses* traced, rs_response_arrays* arrays);
 
 #ifdef __cplusplus
 }

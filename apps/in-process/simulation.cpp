@@ -1,20 +1,16 @@
 // Simulations at the border: rays that are rendered as the pixels of dirsig-render are.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <vector>
 
 #include "apps/in-process/border.h"
 #include "apps/in-process/rays.h"
+#include "apps/in-process/reading.h"
 #include "apps/in-process/remote_scenes.h"
 #include "base/diagnostics.h"
 #include "base/error.h"
 #include "base/renamed.h"
-#include "formats/scene_hdf/scene_hdf.h"
-#include "formats/sim_text/sim_text.h"
-#include "formats/sqt/sqt.h"
 #include "heat/seen_warmth.h"
-#include "scene/combine.h"
 #include "scheduler/bins.h"
 #include "scheduler/moments.h"
 #include "scheduler/through_tables.h"
@@ -25,33 +21,6 @@ namespace {
 
 using Messages = std::vector<std::string>;
 
-Simulation simulation_of(const char* path) {
-  need(path, "path");
-  SimulationCallbacks callbacks;
-  callbacks.deliver = [](const Delivery&) {};
-  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
-    return read_scene_origin(scenes.front().path).origin;
-  };
-  Simulation sim = read_simulation(path, callbacks);
-  if (!sim.lidars.empty())
-    throw Error(sim.lidars[0].where, "laser radars are not rendered within a process", "dirsig-render " + sim.path);
-  return sim;
-}
-
-std::shared_ptr<Scene> scenes_of(const Simulation& sim) {
-  std::vector<ScenePart> parts;
-  for (const SimulationScene& s : sim.scenes)
-    parts.push_back(
-        {std::filesystem::path(s.path).stem().string(),
-         read_scene(s.path, [](auto bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }),
-         s.placement, s.motion, s.life});
-  const ScenePart& first = parts[0];
-  const bool whole = parts.size() == 1 && !first.placement && !first.motion && first.life == kAlways;
-  auto scene = std::make_shared<Scene>(whole ? std::move(parts[0].scene) : combine_scenes(std::move(parts)));
-  if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
-  return scene;
-}
-
 Sensor& sensor_of(const Simulation& sim, const char* name) {
   std::string all;
   for (const auto& sensor : sim.sensors) {
@@ -59,6 +28,8 @@ Sensor& sensor_of(const Simulation& sim, const char* name) {
     all += (all.empty() ? "" : ", ") + sensor->name();
   }
   const Where where{sim.path, 0, 0, {}, -1};
+  if (all.empty())
+    throw Error(where, "the simulation has no sensor of radiance", "rs_lidar_open opens its laser radars");
   if (!name) throw Error(where, strf("the simulation has %zu sensors", sim.sensors.size()), "name one of " + all);
   throw Error(where, "there is no sensor '" + printable(name) + "'", "known: " + all);
 }

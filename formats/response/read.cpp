@@ -85,6 +85,8 @@ ResponseReader::ResponseReader(const std::string& path) : open_(std::make_unique
   head.epsg = static_cast<int>(whole(r, n[5], 999999, "as EPSG code"));
   open_->blocks = whole(r, n[6], 1e7, "blocks");
   open_->pulses = whole(r, n[7], 1e12, "pulses");
+  if (r.has(kScrambles))
+    head.scrambles = static_cast<int>(whole(r, r.get<double>(kScrambles, "1", 1, 2)[0], 64, "scrambles"));
   take_place(r, head);
   head.channels = r.get_names("/channels");
   const std::vector<double> pixels = r.get<double>("/pixels", "1", 3);
@@ -104,6 +106,10 @@ ResponseReader::ResponseReader(const std::string& path) : open_(std::make_unique
 
 ResponseReader::~ResponseReader() = default;
 const ResponseHead& ResponseReader::head() const { return open_->head; }
+std::optional<std::string> ResponseReader::unfinished() const {
+  if (!open_->file.has(kUnfinished)) return std::nullopt;
+  return open_->file.get_names(kUnfinished, 1)[0];
+}
 uint64_t ResponseReader::pulses() const { return open_->pulses; }
 size_t ResponseReader::blocks() const { return open_->blocks; }
 
@@ -122,6 +128,8 @@ ResponseBlock ResponseReader::block(size_t number) const {
   b.contributions = r.get<uint32_t>(in_block(number, "entries/contributions"), "1", 1, entries);
   b.value = r.get<double>(in_block(number, "entries/value"), "photons", open_->head.channels.size(), entries);
   b.variance = r.get<double>(in_block(number, "entries/variance"), "photons2", open_->head.channels.size(), entries);
+  if (r.has(in_block(number, "entries/skewness")))
+    b.skewness = r.get<float>(in_block(number, "entries/skewness"), "1", open_->head.channels.size(), entries);
   if (const std::string wrong = fault_of(open_->head, b); !wrong.empty()) r.fail(wrong);
   return b;
 }

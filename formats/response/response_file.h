@@ -17,6 +17,9 @@ class ResponseWriter : public ResponseSink {
   // The pulses that follow those before. Error: not writable, the disk is full.
   void take(ResponseBlock&& block) override;
   void finish();  // the file is there from now on, whole
+  // In place of finish(): what was taken so far is left under another name. identity: of what was asked for, to be
+  // known again (ResponseReader::unfinished).
+  void leave(const std::string& path, const std::string& identity);
 
  private:
   struct Open;
@@ -31,6 +34,8 @@ class ResponseReader {
   const ResponseHead& head() const;
   uint64_t pulses() const;
   size_t blocks() const;
+  // Of a file that leave() has written: the identity that it was given. Nothing: it is whole.
+  std::optional<std::string> unfinished() const;
   // Error: damaged, or values that cannot be (named with pulse and pixel).
   ResponseBlock block(size_t number) const;
   void for_each_block(const std::function<void(const ResponseBlock&)>& visit) const;

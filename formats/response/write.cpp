@@ -1,9 +1,11 @@
 #include <cmath>
+#include <filesystem>
 
 #include "base/files.h"
 #include "formats/hdf5/h5.h"
 #include "formats/response/layout.h"
 #include "formats/response/response_file.h"
+#include "math/stats.h"
 
 namespace suite {
 
@@ -13,6 +15,7 @@ struct ResponseWriter::Open {
   Open(const std::string& path, const ResponseHead& h, size_t entries)
       : head(h), file(path), writer(file.temporary(), path, [](const std::string&) { return 1; }), most(entries) {}
   void flush();
+  void end();  // nothing more comes
   ResponseHead head;
   AtomicFile file;
   h5::Writer writer;
@@ -57,6 +60,7 @@ void put_block(h5::Writer& w, size_t number, const ResponseBlock& b, size_t chan
   w.put(in_block(number, "entries/contributions"), b.contributions, "1");
   w.put(in_block(number, "entries/value"), b.value, "photons", channels);
   w.put(in_block(number, "entries/variance"), b.variance, "photons2", channels);
+  if (!b.skewness.empty()) w.put(in_block(number, "entries/skewness"), b.skewness, "1", channels);
 }
 
 void append(ResponseBlock& to, ResponseBlock&& more) {
@@ -69,6 +73,7 @@ void append(ResponseBlock& to, ResponseBlock&& more) {
   for (size_t r = 1; r < more.begin.size(); ++r) to.begin.push_back(before + more.begin[r]);
   add(to.pulses, more.pulses), add(to.bound, more.bound), add(to.paths, more.paths), add(to.bin, more.bin);
   add(to.contributions, more.contributions), add(to.value, more.value), add(to.variance, more.variance);
+  add(to.skewness, more.skewness);
 }
 
 }  // namespace
@@ -98,6 +103,9 @@ ResponseWriter::ResponseWriter(const std::string& path, const ResponseHead& head
   std::vector<double> pixels;
   for (const Dir& d : head.pixels) pixels.insert(pixels.end(), {d.x, d.y, d.z});
   w.put("/pixels", pixels, "1", 3);
+  if (head.scrambles > 0)
+    w.put(kScrambles,
+          std::vector<double>{static_cast<double>(head.scrambles), student_t_quantile(0.95, head.scrambles - 1)}, "1");
 }
 
 ResponseWriter::~ResponseWriter() = default;
@@ -111,8 +119,8 @@ void ResponseWriter::take(ResponseBlock&& block) {
   if (open_->kept.entries() >= open_->most || open_->kept.row_count() >= open_->most) open_->flush();
 }
 
-void ResponseWriter::finish() {
-  Open& o = *open_;
+void ResponseWriter::Open::end() {
+  Open& o = *this;
   o.flush();
   const double numbers[8] = {o.head.bin,
                              static_cast<double>(o.head.bins),
@@ -124,7 +132,19 @@ void ResponseWriter::finish() {
                              static_cast<double>(o.pulses)};
   o.writer.attribute(kBins, numbers);
   o.writer.close();
-  o.file.commit();
+}
+
+void ResponseWriter::finish() {
+  open_->end();
+  open_->file.commit();
+}
+
+void ResponseWriter::leave(const std::string& path, const std::string& identity) {
+  open_->writer.put_names(kUnfinished, {identity});
+  open_->end();
+  std::error_code failed;
+  std::filesystem::rename(open_->file.temporary(), path, failed);
+  if (failed) throw Error(Where{path, 0, 0, {}, -1}, "cannot be written: " + failed.message());
 }
 
 }  // namespace suite

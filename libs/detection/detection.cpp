@@ -120,7 +120,9 @@ ReturnTruth truth_of(const ResponseHead& head, const ResponseRow& row, double ti
   t.photons = sums[kSingle] + sums[kMultiple];
   if (t.photons > 0) t.multiple = sums[kMultiple] / t.photons;
   for (size_t c = kMultiple + 1; c < sums.size(); ++c)
-    if (sums[c] > 0 && (t.tag < 0 || sums[c] > sums[static_cast<size_t>(t.tag)])) t.tag = static_cast<int>(c);
+    if (head.channels[c].starts_with("tag:") && sums[c] > 0 &&
+        (t.tag < 0 || sums[c] > sums[static_cast<size_t>(t.tag)]))
+      t.tag = static_cast<int>(c);
   return t;
 }
 

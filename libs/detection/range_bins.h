@@ -17,11 +17,17 @@ class RangeBins {
  public:
   // scrambles: >= 2; every one estimates the whole value.
   RangeBins(const ResponseHead& head, double start, int scrambles);
+  // A further channel that has a share of the photons.
+  struct Part {
+    size_t channel;
+    double share;
+  };
   // photons: of this path, its weight and 1 / paths of the scramble in it, >= 0. tag: channel above kMultiple, 0 =
   // none. Arrivals outside of the bins are counted in outside().
-  void deposit(int scramble, double arrival, double photons, bool multiple, size_t tag = 0);
+  void deposit(int scramble, double arrival, double photons, bool multiple, size_t tag = 0,
+               std::span<const Part> parts = {});
   // Photons within a bin's width.
-  void passive(int scramble, double photons, bool multiple, size_t tag = 0);
+  void passive(int scramble, double photons, bool multiple, size_t tag = 0, std::span<const Part> parts = {});
   // Paths that were asked, of all scrambles.
   void add_paths(uint64_t n) { paths_ += n; }
   double outside() const { return outside_; }  // photons, mean of the scrambles
@@ -32,7 +38,7 @@ class RangeBins {
   void end_row(ResponseBlock& block);
 
  private:
-  void add(uint32_t bin, int scramble, double photons, bool multiple, size_t tag);
+  void add(uint32_t bin, int scramble, double photons, bool multiple, size_t tag, std::span<const Part> parts);
   struct Cell {
     uint32_t contributions = 0;
     std::vector<double> sums;  // scrambles x channels

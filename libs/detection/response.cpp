@@ -11,9 +11,21 @@ BinKnown ResponseRow::known(uint32_t bin) const {
   const auto first = block_->bin.begin() + static_cast<std::ptrdiff_t>(block_->begin[row_]),
              last = first + static_cast<std::ptrdiff_t>(size());
   const auto found = std::lower_bound(first, last, bin);
-  if (found == last || *found != bin) return {false, 0, 0, bound()};
+  if (found == last || *found != bin) return {false, 0, 0, bound(), {0, bound()}};
   const auto k = static_cast<size_t>(found - first);
-  return {true, photons(k), std::sqrt(photon_variance(k)), 0};
+  return {true, photons(k), std::sqrt(photon_variance(k)), 0, photon_interval(k)};
+}
+
+BinInterval ResponseRow::interval(size_t k, size_t channel, double confidence) const {
+  constexpr int kMany = 1 << 20;  // scrambles: as good as normal
+  const double skewness = block_->skewness.empty() ? 0 : double{block_->skewness[at(k) * channels_ + channel]};
+  return bin_interval(value(k, channel), std::sqrt(variance(k, channel)), skewness, scrambles_ ? scrambles_ : kMany,
+                      confidence);
+}
+
+BinInterval ResponseRow::photon_interval(size_t k, double confidence) const {
+  return interval_of_sum({value(k, kSingle), interval(k, kSingle, confidence)},
+                         {value(k, kMultiple), interval(k, kMultiple, confidence)});
 }
 
 std::string fault_of(const ResponseHead& h) {
@@ -22,6 +34,8 @@ std::string fault_of(const ResponseHead& h) {
   if (h.channels.size() < 2 || h.channels[kSingle] != "single" || h.channels[kMultiple] != "multiple")
     return "channels that do not begin with 'single' and 'multiple'";
   if (h.channels.size() > 4096) return strf("%zu channels, at most 4096 are known", h.channels.size());
+  if (h.scrambles != 0 && !(h.scrambles >= 2 && h.scrambles <= 64))
+    return strf("errors of %d scrambles, 2 to 64 are known", h.scrambles);
   if (h.pixels.empty() || uint64_t{h.columns} * h.rows != h.pixels.size())
     return strf("%zu directions of pixels for %u x %u", h.pixels.size(), h.columns, h.rows);
   for (const Dir& d : h.pixels)
@@ -52,6 +66,8 @@ std::string fault_of_row(const ResponseHead& h, const ResponseBlock& b, size_t r
     for (size_t c = 0; c < h.channels.size(); ++c) {
       const double v = b.value[e * h.channels.size() + c], s = b.variance[e * h.channels.size() + c];
       if (!(v >= 0 && v <= 1e30 && s >= 0 && s <= 1e60)) return strf("has %g photons with a variance of %g", v, s);
+      if (!b.skewness.empty() && !std::isfinite(b.skewness[e * h.channels.size() + c]))
+        return strf("has a skewness of %g", double{b.skewness[e * h.channels.size() + c]});
     }
   }
   return {};
@@ -65,7 +81,8 @@ std::string fault_of(const ResponseHead& h, const ResponseBlock& b) {
     return strf("%zu pulses of %zu pixels have other numbers of rows", b.pulses.size(), h.pixel_count());
   if (b.begin.front() != 0 || b.begin.back() != entries || !std::is_sorted(b.begin.begin(), b.begin.end()))
     return "rows do not follow each other";
-  if (b.contributions.size() != entries || b.value.size() != all || b.variance.size() != all)
+  if (b.contributions.size() != entries || b.value.size() != all || b.variance.size() != all ||
+      (!b.skewness.empty() && b.skewness.size() != all))
     return "entries have other numbers of values";
   for (size_t p = 0; p < b.pulses.size(); ++p)
     if (const std::string wrong = fault_of(b.pulses[p]); !wrong.empty())

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "detection/bin_interval.h"
 #include "math/dualquat.h"
 #include "motion/scene_frame.h"
 #include "motion/time.h"
@@ -28,6 +29,7 @@ inline constexpr size_t kSingle = 0, kMultiple = 1;
 struct ResponseHead {
   double bin = 1e-10;  // s, width of a range bin, 1e-13..1e-6
   uint32_t bins = 0;   // range bins of a pulse, 1..1e8; numbered from 1
+  int scrambles = 0;   // of which the errors are, 2..64; 0: they are not known to be of scrambles
   std::vector<std::string> channels{"single", "multiple"};
   uint32_t columns = 1, rows = 1;       // of the focal plane
   std::vector<Dir> pixels{{0, 0, -1}};  // centres of the pixels in the receiver's frame, row by row
@@ -62,6 +64,7 @@ struct ResponseBlock {
   std::vector<uint32_t> contributions;  // of each entry
   std::vector<double> value;            // photons on the focal plane, entries x channels, >= 0
   std::vector<double> variance;         // of value
+  std::vector<float> skewness;          // of the scrambles of value (bin_interval.h); empty: not known
 
   size_t row_count() const { return begin.size() - 1; }
   size_t entries() const { return bin.size(); }
@@ -72,13 +75,18 @@ struct BinKnown {
   bool reached = false;
   double value = 0, error = 0;  // photons of all light, and the standard error
   double bound = 0;             // photons, where it is not reached
+  BinInterval interval;         // holds the mean with 95 % confidence; where it is not reached up to the bound
 };
 
 // One row of a block.
 class ResponseRow {
  public:
   ResponseRow(const ResponseHead& head, const ResponseBlock& block, size_t row)
-      : block_(&block), row_(row), channels_(head.channels.size()), pixels_(head.pixel_count()) {}
+      : block_(&block),
+        row_(row),
+        channels_(head.channels.size()),
+        pixels_(head.pixel_count()),
+        scrambles_(head.scrambles) {}
   const ResponsePulse& pulse() const { return block_->pulses[row_ / pixels_]; }
   uint64_t pulse_number() const { return block_->first_pulse + row_ / pixels_; }
   size_t pixel() const { return row_ % pixels_; }
@@ -90,6 +98,10 @@ class ResponseRow {
   double photons(size_t k) const { return value(k, kSingle) + value(k, kMultiple); }
   // Single and multiple scattering are taken as independent.
   double photon_variance(size_t k) const { return variance(k, kSingle) + variance(k, kMultiple); }
+  // What holds the mean of a channel, or of all light, with that confidence. Of as many degrees of freedom as scrambles
+  // tell, and without skewness, where they are not known.
+  BinInterval interval(size_t k, size_t channel, double confidence = 0.95) const;
+  BinInterval photon_interval(size_t k, double confidence = 0.95) const;
   double bound() const { return block_->bound[row_]; }
   double passive() const { return size() && bin(0) == 0 ? photons(0) : 0; }  // photons within a bin's width
   BinKnown known(uint32_t bin) const;
@@ -98,6 +110,7 @@ class ResponseRow {
   size_t at(size_t k) const { return block_->begin[row_] + k; }
   const ResponseBlock* block_;
   size_t row_, channels_, pixels_;
+  int scrambles_;
 };
 
 // s after the emission, the middle of range bin `bin` (from 1).

@@ -33,8 +33,17 @@ std::optional<LightPlace> LidarEnd::draw_place(const LightReceiver&, const std::
   return LightPlace{place(*pulse), true, 1, 0};
 }
 
-LaserEnd::LaserEnd(const LaserBeam& beam, const PulsesAtWork& pulses, size_t bins)
-    : LidarEnd(pulses), beam_(beam), ones_(bins, 1.0f) {}
+LaserEnd::LaserEnd(const LaserBeam& beam, const PulsesAtWork& pulses, size_t bins, const std::optional<Stokes>& stokes)
+    : LidarEnd(pulses), beam_(beam), bins_(bins), stokes_(stokes) {
+  constexpr size_t kSamples = 8192;  // many more than a wave of paths asks for before its light is added
+  given_.resize(stokes ? kSamples : 1);
+  ones_.assign(given_.size() * bins, 1.0f);
+}
+
+PolarFrame frame_about(Dir k, Vec3 x) {
+  const Vec3 e1 = normalized(x - k * dot(x, k));
+  return {e1, cross(k, e1)};
+}
 
 std::optional<LightSample> LaserEnd::sample(const LightReceiver& at, const std::array<double, 4>&, double time) const {
   const PulseAtWork* const pulse = pulses_.of(time);
@@ -42,7 +51,12 @@ std::optional<LightSample> LaserEnd::sample(const LightReceiver& at, const std::
   if (!s) return std::nullopt;
   s->scale = beam_.density(pulse->at_laser(-s->direction), s->distance) / (s->distance * s->distance);
   if (!(s->scale > 0)) return std::nullopt;
-  s->spectrum = ones_.data();
+  if (stokes_) {
+    last_ = (last_ + 1) % given_.size();
+    const Dir way = -s->direction;
+    given_[last_] = frame_rotation(frame_about(way, pulse->laser.vector({1, 0, 0})), meridian_frame(way).e1) * *stokes_;
+  }
+  s->spectrum = &ones_[last_ * bins_];
   return s;
 }
 

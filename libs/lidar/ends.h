@@ -4,6 +4,8 @@
 //   LaserEnd      scale = density of the beam, 1/sr, over the squared distance: irradiance of a unit energy
 //   ReceiverEnd   scale = importance, m2, over the squared distance. Of a path that leaves the laser with a unit energy
 //                 that is the energy on the focal plane, by reciprocity; which pixel's tells the spectrum (pixel_of)
+// A polarised laser tells the Stokes vector of each sample by its spectrum (stokes_of), for some thousands of samples
+// after it was given.
 // Based on: E. Veach, "Robust Monte Carlo methods for light transport simulation", 1997, chapter 4 (importance).
 #pragma once
 #include <vector>
@@ -12,8 +14,12 @@
 #include "lidar/laser_beam.h"
 #include "lidar/pulse_at_work.h"
 #include "light/light.h"
+#include "math/mueller.h"
 
 namespace suite {
+
+// The frame of light that travels along k whose first axis lies in the plane of k and x.
+PolarFrame frame_about(Dir k, Vec3 x);
 
 class LidarEnd : public Light {
  public:
@@ -30,15 +36,23 @@ class LidarEnd : public Light {
 
 class LaserEnd final : public LidarEnd {
  public:
-  // Keeps references. bins: of the state.
-  LaserEnd(const LaserBeam& beam, const PulsesAtWork& pulses, size_t bins);
+  // Keeps references. bins: of the state. stokes: of the laser; nothing: not asked for. One thread asks.
+  LaserEnd(const LaserBeam& beam, const PulsesAtWork& pulses, size_t bins, const std::optional<Stokes>& stokes = {});
   std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
                                     double time) const override;
+  // Of a sample: over its intensity, in the meridian frame of its way from the laser.
+  const Stokes& stokes_of(const float* spectrum) const {
+    return given_[static_cast<size_t>(spectrum - ones_.data()) / bins_];
+  }
 
  private:
   Vec3 place(const PulseAtWork& pulse) const override { return pulse.laser.translation; }
   const LaserBeam& beam_;
-  std::vector<float> ones_;
+  size_t bins_;
+  std::optional<Stokes> stokes_;
+  std::vector<float> ones_;            // [sample][bin]
+  mutable std::vector<Stokes> given_;  // [sample]
+  mutable size_t last_ = 0;
 };
 
 class ReceiverEnd final : public LidarEnd {

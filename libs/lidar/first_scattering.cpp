@@ -28,9 +28,10 @@ bool FirstScattering::any(const LineKit& kit) {
          (places_in(kit.environment) && places_in(kit.environment)->any());
 }
 
-FirstScattering::FirstScattering(const LineKit& kit, const Light& end)
+FirstScattering::FirstScattering(const LineKit& kit, const Light& end, const LaserEnd* laser)
     : kit_(kit),
       end_(end),
+      laser_(laser),
       air_(kit.environment.atmosphere.get()),
       field_(kit.surface.tracer().scene(), kit.optics.state()),
       bodies_(kit.surface),
@@ -139,6 +140,22 @@ double FirstScattering::phase(const Stretch& s, double cosine) {
   return sum;
 }
 
+// Over its m11, between the meridian frames of both directions of travel. What is not known depolarises.
+Mueller FirstScattering::mueller(const Stretch& s, Dir out, Dir in) const {
+  const double cosine = scattering_cosine(out, in);
+  PlaneBlocks all{0, 0, 0, 0, 0, 0}, one;
+  double sum = 0;
+  for (size_t c = s.contents; c < s.contents + s.count; ++c) {
+    const BakedMedium& m = kit_.optics.media()[contents_[c].medium];
+    float p = 0;
+    m.phase->eval(cosine, {&p, 1});
+    m.phase->polarised(cosine, {&one, 1});
+    const double mine = contents_[c].density * double{m.scattering[0]} * double{p};
+    all = all + one * mine, sum += mine;
+  }
+  return sum > 0 ? ScatteringPlane(out, in).matrix(all * (1 / sum)) : Mueller::depolariser();
+}
+
 auto FirstScattering::stretch_at(double t) const -> const Stretch* {
   const auto after =
       std::upper_bound(stretches_.begin(), stretches_.end(), t, [](double x, const Stretch& s) { return x < s.begin; });
@@ -200,6 +217,11 @@ auto FirstScattering::go_on(const Ray& ray, const std::array<double, 4>& u) -> s
   Onward on;
   on.ray = {ray.origin + ray.direction * t, scattered_direction(-ray.direction, by->phase->sample(u[1], 0), u[2]),
             ray.time, ray.draw};
+  if (laser_) {
+    PlaneBlocks blocks;
+    by->phase->polarised(scattering_cosine(-ray.direction, on.ray.direction), {&blocks, 1});
+    on.scattered = ScatteringPlane(-ray.direction, on.ray.direction).matrix(blocks);
+  }
   on.weight = chance * std::exp(-absorbed) * air_up_to(ray, leg, t);
   on.arrival = leg.arrival + leg.delay * (t - leg.begin);
   return on;
@@ -225,15 +247,17 @@ void FirstScattering::place(const Ray& ray, Vec3 end_place, const Gate& gate, do
   const double left = air_up_to(ray, leg, t) * std::exp(-depth);
   double light = phase(s, scattering_cosine(-ray.direction, seen->direction)) * seen->scale * left / density;
   if (!(light > 0)) return;
+  const Stokes stokes =
+      laser_ ? mueller(s, -ray.direction, seen->direction) * laser_->stokes_of(seen->spectrum) : Stokes{1, 0, 0, 0};
   if (same) {
     // Both ends near each other, from the ray's on.
     light *= left * std::exp(leaves);
     const double more = seen->distance - t;
-    to.push_back({there_and_back + leg.delay * more, light, seen->spectrum});
+    to.push_back({there_and_back + leg.delay * more, light, seen->spectrum, stokes});
     return;
   }
   waiting_.push_back(
-      {{arrival, light, seen->spectrum}, {x, seen->direction, ray.time, ray.draw}, seen->distance, s.leg});
+      {{arrival, light, seen->spectrum, stokes}, {x, seen->direction, ray.time, ray.draw}, seen->distance, s.leg});
 }
 
 // Those whose end has to be looked for.

@@ -18,6 +18,7 @@
 #include <optional>
 #include <vector>
 
+#include "lidar/ends.h"
 #include "lidar/line_kit.h"
 #include "lidar/pulse_at_work.h"
 #include "transport/media/media_sight.h"
@@ -28,8 +29,8 @@ class FirstScattering {
  public:
   static constexpr double kSameWay = 1e-4;  // rad
 
-  // Keeps references. end: what places ask for.
-  FirstScattering(const LineKit& kit, const Light& end);
+  // Keeps references. end: what places ask for. laser: the same end, where polarisation is asked for; else null.
+  FirstScattering(const LineKit& kit, const Light& end, const LaserEnd* laser = nullptr);
   ~FirstScattering();
   // Whether anything scatters in the scene, bodies and air alike.
   static bool any(const LineKit& kit);
@@ -38,6 +39,8 @@ class FirstScattering {
     double arrival;         // m
     double light;           // as a contribution's product, without `spectrum`
     const float* spectrum;  // of the end
+    // Over its intensity, in the meridian frame of the way to the ray's beginning.
+    Stokes stokes{1, 0, 0, 0};
   };
   // Which of the strata of the ray's samples these are: number `index` of `count` paths, each with `samples`.
   struct Strata {
@@ -55,7 +58,8 @@ class FirstScattering {
   // scattered anyway, or nothing scatters.
   struct Onward {
     Ray ray;
-    double weight, arrival;  // arrival: m up to there
+    double weight, arrival;                   // arrival: m up to there
+    Mueller scattered = Mueller::identity();  // over its m11, where polarisation is asked for
   };
   std::optional<Onward> go_on(const Ray& ray, const std::array<double, 4>& u);
   // Of the last ray: by what the light of the first surface, scattered once there, is more for leaves on the way.
@@ -88,6 +92,7 @@ class FirstScattering {
   void walk_leg(const Ray& ray, double begin, double length);
   void add_stretch(double begin, double end);
   double phase(const Stretch& s, double cosine);
+  Mueller mueller(const Stretch& s, Dir out, Dir in) const;
   double air(Vec3 from, Dir direction, double length);
   // The part of a ray that places stand on, and how.
   struct Span {
@@ -106,6 +111,7 @@ class FirstScattering {
 
   const LineKit& kit_;
   const Light& end_;
+  const LaserEnd* laser_;
   const Atmosphere* air_;
   const double knot_[1] = {1};
   VolumeField field_;

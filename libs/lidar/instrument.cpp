@@ -13,8 +13,11 @@ std::string fault_of(const LidarInstrument& i) {
     return "an array needs rows, and a pitch and a focal length above 0";
   if (uint64_t{r.columns} * r.rows > 10000000)
     return strf("the array has %u x %u pixels, at most 1e7 are traced", r.columns, r.rows);
-  if (i.laser.stokes != std::array<double, 4>{1, 0, 0, 0})
-    return "polarisation is not traced, the Stokes vector must be [1, 0, 0, 0]";
+  const auto& s = i.laser.stokes;
+  if (!(s[0] == 1 && s[1] * s[1] + s[2] * s[2] + s[3] * s[3] <= 1 + 1e-12))
+    return "the Stokes vector must be [1, Q, U, V] with Q2 + U2 + V2 at most 1";
+  if (polarised(i) && i.start_from == StartFrom::laser)
+    return "paths that carry polarisation begin at the receiver (`start_from: receiver` or `auto`)";
   if (!(i.gate.bin >= 1e-13 && i.gate.bin <= 1e-6)) return "range bins must be 1e-4 to 1000 ns wide";
   if (!(i.gate.start >= 0 && i.gate.stop > i.gate.start))
     return "the gate must start at 0 or later and stop after that";

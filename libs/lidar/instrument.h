@@ -28,20 +28,30 @@ struct BeamProfile {
   double cell = 0;  // rad, edge of a cell of the image
 };
 
+// An ideal analyser before the detector: its channel has half of the photons of all light, and the half of what the
+// Stokes vector says. Angles of linear ones go from the receiver's x towards its y, looking at it; plus: V > 0, which
+// turns counter-clockwise as the receiver sees it.
+enum class Analyser : uint8_t { linear_0, linear_45, linear_90, linear_135, circular_plus, circular_minus };
+inline constexpr std::array kAnalyserNames{"linear_0",   "linear_45",     "linear_90",
+                                           "linear_135", "circular_plus", "circular_minus"};
+
 struct LaserSpec {
   double wavelength_um = 1.064;
   double width_um = 1e-4;  // of the line
   BeamProfile beam;
   Pose offset;  // from the laser's frame to the body's: baseline and boresight error
+  // I, Q, U, V about the laser's x axis (math/mueller.h): +Q along it, +U half-way from it to -y, for light leaves
+  // along -z.
   std::array<double, 4> stokes{1, 0, 0, 0};
 };
 
 struct LidarReceiver {
-  double aperture = 0.1;    // m, diameter, > 0
-  double obscuration = 0;   // share of the aperture's area that is covered, 0..1
-  double throughput = 1;    // of the optics, 0..1
-  double filter_um = 1e-3;  // full width of the filter about the laser's line, for passive light
-  Pose offset;              // from the receiver's frame to the body's
+  double aperture = 0.1;            // m, diameter, > 0
+  double obscuration = 0;           // share of the aperture's area that is covered, 0..1
+  double throughput = 1;            // of the optics, 0..1
+  double filter_um = 1e-3;          // full width of the filter about the laser's line, for passive light
+  Pose offset;                      // from the receiver's frame to the body's
+  std::vector<Analyser> analysers;  // each a channel
   // One detector behind a field stop: the full angle. With an array (columns > 0): pixels of `pitch` behind `focal`.
   double field_of_view = 1e-3;  // rad, above 0, at most 2
   uint32_t columns = 0, rows = 0;
@@ -80,6 +90,11 @@ struct LidarInstrument {
   // The map of the text, of which detection reads the rest; nothing: there is none.
   std::optional<Params> detection;
 };
+
+// Whether paths carry polarisation.
+inline bool polarised(const LidarInstrument& i) {
+  return !i.receiver.analysers.empty() || i.laser.stokes != std::array<double, 4>{1, 0, 0, 0};
+}
 
 // What is wrong, as the end of a sentence; empty when nothing is.
 std::string fault_of(const LidarInstrument& instrument);

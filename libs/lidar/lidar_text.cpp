@@ -1,5 +1,6 @@
 #include "lidar/lidar_text.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/required.h"
@@ -92,9 +93,7 @@ LaserSpec read_laser(const Params& p, const SensorContext& context) {
     const std::vector<double> v = s->as_numbers();
     if (v.size() != 4 || !(v[0] == 1) || !(v[1] * v[1] + v[2] * v[2] + v[3] * v[3] <= 1 + 1e-12))
       throw s->error("'stokes' is no light of intensity 1", "[1, Q, U, V] with Q2 + U2 + V2 at most 1");
-    if (v[1] != 0 || v[2] != 0 || v[3] != 0)
-      throw s->error("polarised lasers are not traced: surfaces and media scatter intensity alone",
-                     "leave out 'stokes'");
+    std::copy(v.begin(), v.end(), laser.stokes.begin());
   }
   return laser;
 }
@@ -105,6 +104,12 @@ LidarReceiver read_receiver(const Params& p) {
   r.obscuration = p.number_in("obscuration", 0, 0.999999, "(share of the aperture's area)", 0);
   r.throughput = p.number_in("throughput", 1e-12, 1, "", 1);
   r.filter_um = p.number_in("filter_nm", 1e-6, 1e4, "nm", 1) * 1e-3;
+  if (const auto list = p.find("analysers"))
+    for (const Params& a : list->items()) {
+      const auto kind = static_cast<Analyser>(a.as_choice({kAnalyserNames.begin(), kAnalyserNames.end()}));
+      if (std::ranges::find(r.analysers, kind) != r.analysers.end()) throw a.error("the analyser is there twice");
+      r.analysers.push_back(kind);
+    }
   const auto array = p.find("array");
   if (!array) {
     r.field_of_view = p.number_in("field_of_view_mrad", 1e-6, 2000, "mrad") * 1e-3;

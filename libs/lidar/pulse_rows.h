@@ -19,7 +19,7 @@ struct TracePlan {
   const ResponseHead& head;
   LaserBeam beam;
   ReceiverField field;
-  bool laser_first;
+  bool laser_first, polarised;
   RangeSink::Tags tags;
   uint64_t instrument_key;  // of random numbers
   int scrambles;
@@ -44,12 +44,19 @@ class PulseRows {
 
  private:
   struct Job;  // one kernel and what it needs
-  std::unique_ptr<Job> make_job(std::shared_ptr<const Light> end, const ReceiverEnd* receiver, bool passive);
+  struct End {
+    std::shared_ptr<const Light> light;     // null: passive light alone
+    const ReceiverEnd* receiver = nullptr;  // which of both it is
+    const LaserEnd* laser = nullptr;
+  };
+  std::unique_ptr<Job> make_job(const End& end, bool passive);
   void run(Job& job, const RowRange& range, bool from_laser, PulseReport& report);
+  static void add_path(std::span<RangeBins> rows);
   void scatter_once(Job& job, const PulseAtWork& pulse, const Ray& ray, const FirstScattering::Strata& strata,
-                    RangeSink::Lane& lane);
+                    const Mueller& sensor, RangeSink::Lane& lane);
+  // sensor: of the path's polarisation, where it carries any.
   void start(Job& job, const SensorRay& ray, const SampleStream& stream, uint32_t sample, const RangeSink::Lane& lane,
-             PulseReport& report);
+             const Mueller& sensor, PulseReport& report);
   SensorRay from_receiver(Job& job, const PulseAtWork& pulse, size_t pixel, const std::array<double, 4>& u,
                           RangeSink::Lane& lane) const;
   SensorRay from_laser(const PulseAtWork& pulse, const SampleStream& stream, uint32_t sample,

@@ -5,6 +5,7 @@
 #include "detection/range_bins.h"
 #include "lidar/ends.h"
 #include "transport/path_tracing.h"
+#include "transport/stokes_throughputs.h"
 
 namespace suite {
 
@@ -34,12 +35,24 @@ class RangeSink final : public Sink<SpectralThroughputs> {
   void tell_apart(const Tags& tags) { tags_ = &tags; }  // kept
   void begin(uint32_t p, const Lane& lane) { lanes_[p] = lane; }
   uint64_t failures() const { return failures_; }
-  // Light of a lane that has been found elsewhere: photons = lane.active times light. spectrum: of the end.
-  void add_single(const Lane& lane, double arrival, double light, const float* spectrum);
+  // Analysers and the first of their channels; where paths carry polarisation.
+  void analyse(std::span<const Analyser> analysers, size_t first_channel);
+  // Light of a lane that has been found elsewhere: photons = lane.active times light. spectrum: of the end. seen: its
+  // Stokes vector over its intensity, as the sensor sees it.
+  void add_single(const Lane& lane, double arrival, double light, const float* spectrum, const Stokes& seen);
 
-  void add(std::span<const Contribution> stage, SpectralThroughputs& throughputs) override;
+  void add(std::span<const Contribution> stage, SpectralThroughputs& throughputs) override {
+    for (const Contribution& c : stage) add(c, throughputs, {1, 0, 0, 0}, 0);
+  }
+  // unknown: share of the light whose polarisation is not known.
+  void add(const Contribution& c, SpectralThroughputs& throughputs, const Stokes& seen, double unknown);
+  uint16_t end() const { return end_; }
+  // Photons of the laser, and those of them whose polarisation is not known.
+  double photons() const { return photons_; }
+  double unknown() const { return unknown_; }
 
  private:
+  std::span<const RangeBins::Part> parts(const Stokes& seen);
   size_t tag(uint32_t p) const;
   std::vector<Lane> lanes_;
   uint16_t end_;
@@ -49,6 +62,21 @@ class RangeSink final : public Sink<SpectralThroughputs> {
   const Tags* tags_ = nullptr;  // null: there are no such channels
   PathTracing* kernel_ = nullptr;
   uint64_t failures_ = 0;
+  std::span<const Analyser> analysers_;
+  std::vector<RangeBins::Part> parts_;
+  double photons_ = 0, unknown_ = 0;
+};
+
+// The same where paths carry polarisation.
+class StokesRangeSink final : public Sink<StokesThroughputs> {
+ public:
+  // Keeps references. laser: null where nothing but passive light is asked for.
+  StokesRangeSink(RangeSink& sums, const LaserEnd* laser) : sums_(sums), laser_(laser) {}
+  void add(std::span<const Contribution> stage, StokesThroughputs& throughputs) override;
+
+ private:
+  RangeSink& sums_;
+  const LaserEnd* laser_;
 };
 
 }  // namespace suite

@@ -38,6 +38,7 @@ void check(const TraceOptions& options) {
 }
 
 bool laser_first(const LidarInstrument& i, const LaserBeam& beam, const ReceiverField& field) {
+  if (polarised(i)) return false;
   if (i.start_from != StartFrom::automatic) return i.start_from == StartFrom::laser;
   return beam.solid_angle() < field.solid_angle();
 }
@@ -66,11 +67,13 @@ RangeSink::Tags tags_of(const LidarInstrument& instrument, const Tracer& tracer)
   return tags;
 }
 
-// From the emission of the first pulse to the end of the last one's gate; pulses without a beam do not count.
-TimeSpan window_of(const LidarInstrument& instrument, uint64_t first, uint64_t last) {
+// Of the whole train, whichever of its pulses are traced: from the emission of the first pulse to the end of the last
+// one's gate; pulses without a beam do not count.
+TimeSpan window_of(const LidarInstrument& instrument) {
+  const uint64_t all = instrument.pulses->size();
   std::optional<ResponsePulse> begin, end;
-  for (uint64_t at = first; at < last && !begin; ++at) begin = instrument.pulses->pulse(at);
-  for (uint64_t at = last; at > first && begin && !end; --at) end = instrument.pulses->pulse(at - 1);
+  for (uint64_t at = 0; at < all && !begin; ++at) begin = instrument.pulses->pulse(at);
+  for (uint64_t at = all; at > 0 && begin && !end; --at) end = instrument.pulses->pulse(at - 1);
   if (!begin || !end) return {};
   return {begin->time, end->time + end->start + instrument.gate.stop};
 }
@@ -90,7 +93,7 @@ class Tracing {
       : scene_(std::move(scene)),
         window_(window),
         tracer_(scene_, std::nullopt, changes_in_time(*scene_) ? window : TimeSpan{}, cut_out(*scene_)),
-        head_(response_head(*scene_, instrument)),
+        head_(response_head(*scene_, instrument, options)),
         passive_(passive),
         rows_at_once_(rows_at_once(*scene_, passive, head_)),
         plan_{tracer_,
@@ -100,9 +103,10 @@ class Tracing {
               LaserBeam(instrument.laser.beam),
               ReceiverField(instrument.receiver),
               false,
+              polarised(instrument),
               tags_of(instrument, tracer_),
               key_of(instrument.name),
-              static_cast<int>(std::min(options.scrambles, instrument.paths))} {
+              head_.scrambles} {
     plan_.laser_first = laser_first(instrument, plan_.beam, plan_.field);
     resolve_sources(passive_, *scene_, window.begin);
   }
@@ -160,6 +164,7 @@ void append(const ResponseBlock& rows, ResponseBlock& block) {
   const auto add = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
   add(rows.bound, block.bound), add(rows.paths, block.paths), add(rows.bin, block.bin);
   add(rows.contributions, block.contributions), add(rows.value, block.value), add(rows.variance, block.variance);
+  add(rows.skewness, block.skewness);
 }
 
 // A difference to an even field may leave passive light below nothing by its error.
@@ -167,7 +172,15 @@ void clear_negative(ResponseBlock& block) {
   for (double& v : block.value) v = std::max(v, 0.0);
 }
 
+// Pulses before a number of the train at which a beam leaves.
+uint64_t lit_before(const PulseTrain& train, uint64_t number) {
+  uint64_t n = 0;
+  for (uint64_t i = 0; i < number; ++i) n += train.pulse(i).has_value();
+  return n;
+}
+
 void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport& report) {
+  uint64_t number = lit_before(*plan_.instrument.pulses, first);
   // Pieces are the same however many threads take them, and start where they would for the whole train.
   constexpr uint64_t kPiecesAtOnce = 32;
   const uint64_t pixels = plan_.field.pixels(), pulses = std::max<uint64_t>(1, rows_at_once_ / pixels);
@@ -181,6 +194,7 @@ void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport
           report.photons +=
               block.value[e * head_.channels.size() + kSingle] + block.value[e * head_.channels.size() + kMultiple];
       report.pulses += block.pulses.size();
+      block.first_pulse = number, number += block.pulses.size();
       if (!block.pulses.empty()) sink.take(std::move(block));
     }
     if (plan_.options.progress) plan_.options.progress->add(static_cast<double>(end - at));
@@ -188,6 +202,7 @@ void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport
   }
   report.laser_first = plan_.laser_first;
   for (const auto& [um, line] : kits_) report.passive |= line->shines(), report.hot_spot |= line->any_leaves();
+  if (report.met > 0) report.unknown_polarisation /= report.met;
   if (report.paths > 0) report.truncated /= static_cast<double>(report.paths);
 }
 
@@ -230,23 +245,25 @@ std::vector<ResponseBlock> Tracing::trace(uint64_t first, uint64_t last, PulseRe
     report.rows += pieces[i].report.rows, report.paths += pieces[i].report.paths;
     report.failures += pieces[i].report.failures, report.outside += pieces[i].report.outside;
     report.truncated += pieces[i].report.truncated;
+    report.met += pieces[i].report.met, report.unknown_polarisation += pieces[i].report.unknown_polarisation;
   }
-  for (size_t g = 0; g < groups.size(); ++g) {
-    blocks[g].first_pulse = groups[g].front().number;
+  for (size_t g = 0; g < groups.size(); ++g)
     for (PulseAtWork& p : groups[g]) blocks[g].pulses.push_back(std::move(p.pulse));
-  }
   return blocks;
 }
 
 }  // namespace
 
-ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument) {
+ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument, const TraceOptions& options) {
   check(instrument);
   ResponseHead head;
+  head.scrambles = static_cast<int>(std::min(options.scrambles, instrument.paths));
   head.bin = instrument.gate.bin;
   head.bins = static_cast<uint32_t>(
       std::max(1.0, std::ceil((instrument.gate.stop - instrument.gate.start) / instrument.gate.bin * (1 - 1e-12))));
   for (const std::string& tag : instrument.tags) head.channels.push_back("tag:" + tag);
+  for (const Analyser a : instrument.receiver.analysers)
+    head.channels.emplace_back(kAnalyserNames[static_cast<size_t>(a)]);
   const ReceiverField field(instrument.receiver);
   head.columns = field.columns(), head.rows = field.rows();
   head.pixels.clear();
@@ -267,7 +284,7 @@ PulseReport trace_pulses(const std::shared_ptr<const Scene>& scene, const Source
                  last = first + std::min(options.count, all - first);
   PulseReport report;
   if (first == last) return report;
-  Tracing(scene, passive, instrument, options, window_of(instrument, first, last)).run(first, last, sink, report);
+  Tracing(scene, passive, instrument, options, window_of(instrument)).run(first, last, sink, report);
   return report;
 }
 

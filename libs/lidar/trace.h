@@ -12,9 +12,10 @@
 // water is seen by single scattering. Light that smooth surfaces alone bring back (corner cubes) is not found.
 // Arrival is the optical path with the group index of the matter on it, where that is known, else its phase index; the
 // air counts as vacuum, in arrivals and in ResponseHead::group_index alike.
-// Assumes: reciprocal surfaces; an aperture and a laser that are points but for the beam's waist; spectra alone, no
-// polarisation; the scene stands still from the emission to the reception of a pulse; passive light is even over the
-// filter: it is known at the laser's line alone.
+// A polarised laser and analysers (LidarReceiver) have paths carry Mueller matrices, which begin at the receiver;
+// smooth interfaces are then not looked through, and real air is refused. Assumes: reciprocal surfaces; an aperture and
+// a laser that are points but for the beam's waist; the scene stands still from the emission to the reception of a
+// pulse; passive light is even over the filter: it is known at the laser's line alone.
 #pragma once
 #include <functional>
 #include <memory>
@@ -26,6 +27,10 @@
 #include "transport/options.h"
 
 namespace suite {
+
+// A laser has one place, and paths of a scene that repeats itself know theirs within the cell alone.
+inline constexpr const char *kNoPeriodicLidar = "a scene that repeats itself is not traced for laser radars",
+                            *kNoPeriodicLidarHint = "drop `periodic`, and place copies of the scene side by side";
 
 // Threads are those of base/parallel.h; results do not depend on their number.
 struct TraceOptions {
@@ -41,10 +46,13 @@ struct TraceOptions {
 // What has been traced, for logs.
 struct PulseReport {
   uint64_t pulses = 0, rows = 0, paths = 0;
-  uint64_t dark = 0;         // numbers of the train at which no beam leaves; they are in no block
-  uint64_t failures = 0;     // contributions that were no number
-  double photons = 0;        // of all pulses and pixels, within the gate
-  double outside = 0;        // and outside of it
+  uint64_t dark = 0;      // numbers of the train at which no beam leaves; they are in no block
+  uint64_t failures = 0;  // contributions that were no number
+  double photons = 0;     // of all pulses and pixels, within the gate
+  double outside = 0;     // and outside of it
+  double met = 0;         // light of the laser that paths found, in sums of scrambles
+  // Share of it whose polarisation is not known and counts as none (docs/theory/polarisation.md).
+  double unknown_polarisation = 0;
   double truncated = 0;      // share of the light that was cut at the last order, at most
   bool laser_first = false;  // where paths began
   bool passive = false;      // there is light in bin 0
@@ -52,11 +60,12 @@ struct PulseReport {
 };
 
 // What the blocks of an instrument belong to. scene: for its origin. Error: an instrument with a fault (fault_of).
-ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument);
+ResponseHead response_head(const Scene& scene, const LidarInstrument& instrument, const TraceOptions& options = {});
 
-// Traces pulses and hands their blocks to the sink in the order of the train. A stop signal ends it between blocks by
-// Stopped (base/interrupt.h); what was handed over stays. Error: an instrument with a fault (fault_of), a scene or
-// sources that cannot be baked for the laser's wavelength, motions that do not cover the pulses.
+// Traces pulses and hands their blocks to the sink in the order of the train; they are numbered (first_pulse) by those
+// at which a beam leaves. Bits do not depend on which part of the train is traced in one go. A stop signal ends it
+// between blocks by Stopped (base/interrupt.h); what was handed over stays. Error: an instrument with a fault
+// (fault_of), a scene or sources that cannot be baked for the laser's wavelength, motions that do not cover the pulses.
 PulseReport trace_pulses(const std::shared_ptr<const Scene>& scene, const SourceSpecs& passive,
                          const LidarInstrument& instrument, const TraceOptions& options, ResponseSink& sink);
 

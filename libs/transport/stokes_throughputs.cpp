@@ -42,29 +42,27 @@ void StokesThroughputs::multiply(uint32_t p, const PolarisedEvent& event) {
   for (size_t b = 0; b < (grey_[p] ? 1 : bins()); ++b) rows[b] = rows[b] * event.matrices[one ? 0 : b];
 }
 
-// R times what arrives over its intensity, where lights are unpolarised.
-Stokes StokesThroughputs::arriving(uint32_t p, size_t bin, const Contribution& c) const {
-  const Mueller& rows = rows_[p * bins() + (grey_[p] ? 0 : bin)];
-  Stokes light{1, 0, 0, 0};
-  if (c.polarised) {
-    const Mueller& m = c.polarised->matrices[c.polarised->matrices.size() == 1 ? 0 : bin];
-    light = {m(0, 0), m(1, 0), m(2, 0), m(3, 0)};
-  }
-  return rows * light;
+Stokes StokesThroughputs::seen(const Contribution& c, size_t bin, const Stokes& light) const {
+  const Mueller& rows = rows_[c.path * bins() + (grey_[c.path] ? 0 : bin)];
+  if (!c.polarised) return rows * light;
+  return rows * (c.polarised->matrices[c.polarised->matrices.size() == 1 ? 0 : bin] * light);
 }
+
+// As lights of scenes are.
+static constexpr Stokes kUnpolarised{1, 0, 0, 0};
 
 void StokesThroughputs::shine_stokes(const Contribution& c, float scale, const Targets& targets) {
   const uint32_t p = c.path;
   const bool grey = grey_[p] && (!c.polarised || c.polarised->matrices.size() == 1);
   if (grey) {
-    const Stokes s = arriving(p, 0, c);
+    const Stokes s = seen(c, 0, kUnpolarised);
     for (size_t k = 0; k < 4; ++k)
       if (targets.of[k] != kNone && s[k] != 0)
         shine(p, c.factor, scale * static_cast<float>(s[k]), c.radiance, targets.of[k]);
     return;
   }
   for (size_t b = 0; b < bins(); ++b) {
-    const Stokes s = arriving(p, b, c);
+    const Stokes s = seen(c, b, kUnpolarised);
     for (size_t k = 0; k < 4; ++k) spectrum_[k * bins() + b] = static_cast<float>(s[k]);
   }
   for (size_t k = 0; k < 4; ++k)

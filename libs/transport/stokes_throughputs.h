@@ -35,6 +35,9 @@ class StokesThroughputs : public SpectralThroughputs {
     uint16_t of[4];
   };
   void shine_stokes(const Contribution& c, float scale, const Targets& targets);
+  // The Stokes vector, over the intensity of the path and the factor alone, that light makes at the sensor in a bin.
+  // light: over its intensity, in the meridian frame of the way on which it comes to the last event.
+  Stokes seen(const Contribution& c, size_t bin, const Stokes& light) const;
   // Share of a contribution's light that has passed something of which no matrix is known.
   float unknown(const Contribution& c) const {
     const float beside = c.polarised ? c.polarised->unknown : 0;
@@ -43,7 +46,6 @@ class StokesThroughputs : public SpectralThroughputs {
 
  private:
   void multiply(uint32_t p, const PolarisedEvent& event);
-  Stokes arriving(uint32_t p, size_t bin, const Contribution& c) const;
 
   std::vector<Mueller> rows_;   // [path][bin]
   std::vector<uint8_t> grey_;   // [path] the first holds for all bins

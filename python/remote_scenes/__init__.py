@@ -13,7 +13,7 @@ from .errors import (Finding, InputError, Interrupted, ProgramBug, ProgramError,
                      UsageError)
 from .fitted import FittedFunction, direction, open_sqt
 from .library import set_threads
-from .lidar import Lidar, open_response, read_points, response_of
+from .lidar import Lidar, OpenLidar, open_lidar, open_response, read_points, response_of
 from .lit import LitScene, Radiance, open_simulation
 from .netcdf import write_netcdf
 from .programs import Found, Run, find_program, run_program, version, where_is
@@ -29,9 +29,9 @@ from .tree import Curve, CurveFile, CurveLike, Keys, OpenKeys
 __all__ = [
     "Atmosphere", "Band", "Curve", "CurveFile", "CurveLike", "EnviHeader", "Finding", "Fisheye", "FittedFunction",
     "FormatError", "Found", "FrameCamera", "Hits", "InputError", "Interrupted", "Keys", "Lamp", "Lidar", "LitScene", "Material", "Medium", "Moon", "Object",
-    "OpenKeys", "Origin", "Orthographic", "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError",
+    "OpenKeys", "OpenLidar", "Origin", "Orthographic", "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError",
     "ProgramMissing", "ProgramWarning", "Radiance", "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun",
     "TracedScene", "UsageError", "bands", "box", "check_scene", "cylinder", "direction", "disk", "find_program", "layer",
-    "mesh", "open_envi", "open_response", "open_scene", "open_simulation", "open_sqt", "open_temperatures", "plane", "prepare_scene", "read_header",
+    "mesh", "open_envi", "open_lidar", "open_response", "open_scene", "open_simulation", "open_sqt", "open_temperatures", "plane", "prepare_scene", "read_header",
     "read_points", "read_values", "render", "response_of", "run_program", "set_threads", "sphere", "terrain", "version", "where_is", "write_chips", "write_netcdf",
 ]

@@ -6,7 +6,7 @@ import operator
 import os
 import warnings
 import weakref
-from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint8, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int, c_int64, c_size_t, c_uint8, c_uint32, c_uint64, c_void_p
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -18,7 +18,7 @@ from .errors import ProgramMissing, ProgramWarning, error_of
 from .programs import find_program
 
 NAME = "libremote_scenes.so.1"
-INTERFACE = 2
+INTERFACE = 3
 """What this package needs of the library; newer ones have more."""
 
 Numbers = npt.NDArray[np.float64]
@@ -44,6 +44,18 @@ class HitArrays(Structure):
                 ("instance", _integers), ("tag", _integers), ("triangle", _integers)]
 
 
+class LidarInfo(Structure):
+    _fields_ = [("pulses", c_uint64), ("seed", c_uint64), ("paths", c_uint32), ("bins", c_uint32), ("columns", c_uint32), ("rows", c_uint32),
+                ("channels", c_size_t), ("bin_s", c_double), ("group_index", c_double)]
+
+
+class ResponseArrays(Structure):
+    _fields_ = [("pulses", c_uint64), ("rows", c_uint64), ("entries", c_uint64), ("time", _doubles), ("energy", _doubles), ("wavelength", _doubles),
+                ("start", _doubles), ("emission_place", _doubles), ("emission_rotation", _doubles), ("reception_place", _doubles),
+                ("reception_rotation", _doubles), ("begin", POINTER(c_uint64)), ("bound", _doubles), ("paths", POINTER(c_uint64)),
+                ("bin", POINTER(c_uint32)), ("contributions", POINTER(c_uint32)), ("value", _doubles), ("variance", _doubles), ("skewness", POINTER(c_float)), ("scrambles", c_double), ("student", c_double)]
+
+
 _d, _n = _doubles, c_size_t
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "rs_interface": (c_int, []), "rs_version": (c_char_p, []), "rs_message": (c_char_p, []),
@@ -61,6 +73,10 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "rs_simulation_describe": (None, [c_void_p, POINTER(SimulationInfo)]),
     "rs_simulation_band": (c_char_p, [c_void_p, _n, _d]),
     "rs_simulation_radiance": (c_int, [c_void_p, _n, _d, _d, _d, c_uint32, c_uint64, _d, _d, POINTER(c_uint8)]),
+    "rs_lidar_open": (c_int, [c_char_p, c_char_p, POINTER(c_void_p)]), "rs_lidar_close": (None, [c_void_p]),
+    "rs_lidar_describe": (None, [c_void_p, POINTER(LidarInfo)]), "rs_lidar_channel": (c_char_p, [c_void_p, _n]),
+    "rs_lidar_trace": (c_int, [c_void_p, c_uint64, c_uint64, c_uint32, c_uint64, POINTER(c_void_p)]),
+    "rs_responses_close": (None, [c_void_p]), "rs_responses_describe": (None, [c_void_p, POINTER(ResponseArrays)]),
     "rs_scene_trace": (c_int, [c_void_p, _n, _d, _d, _d, POINTER(c_uint32), POINTER(HitArrays)]),
     "rs_scene_visible": (c_int, [c_void_p, _n, _d, _d, c_double, _d, POINTER(c_uint8)]),
 }

@@ -55,4 +55,5 @@ def main():
     write_png(target, rows)
 
 
-main()
+if __name__ == "__main__":
+    main()

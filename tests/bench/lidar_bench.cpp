@@ -1,5 +1,8 @@
 // Pulses a second of the processor: an airborne scanner over terrain of a mesh by single scattering, and one over a
 // canopy by all orders. Usage: lidar_bench [pulses = 20000]
+// Beside it, what is public of HELIOS++ 2.0, which meets one surface a sub-ray and takes no further order: 32 698 963
+// shots in 947 s of wall time, a tripod scanner over 3 standing and 25 small moving objects, processor and cores not
+// told (github.com/3dgeo-heidelberg/helios, issue 581, 2025). Its sub-rays are 19 a pulse unless asked otherwise.
 #include <cstdio>
 #include <cstdlib>
 
@@ -102,5 +105,8 @@ int main(int argc, char** argv) {
   const uint64_t pulses = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 20000;
   set_threads(1);
   measure("terrain, single scattering", hills(), 10 * pulses, 400, 7, 1, 0.5e-3);
+  measure("terrain, single scattering", hills(), 4 * pulses, 400, 19, 1, 0.5e-3);
   measure("canopy, all orders", canopy(), pulses, 200, 64, 16, 1e-3);
+  std::printf("%-28s 32698963 pulses of about 19 sub-rays: %.0f pulses a second of wall time, cores not told\n",
+              "HELIOS++, public", 32698963 / 947.0);
 }

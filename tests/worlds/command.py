@@ -98,7 +98,7 @@ def main(words=None):
     if o.known:
         return 1 if any(r["status"] not in ("holds", "open") for r in run_known(o)) else 0
     if o.quick:
-        o.factor, o.jobs = 2, 1
+        o.factor, o.jobs, o.relation = 2, 1, "quick"
         results, _ = run_all(o, QUICK, None)
         print(report.summary(results))
         return 1 if any(r["status"] not in ("holds", "none") for r in results) else 0

@@ -9,6 +9,7 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "../golden"))
 import envi  # noqa: E402
+from lidar import photons_of  # noqa: E402
 from rows_model import FIT, PHASE_FIT  # noqa: E402
 
 TIMEOUT_S = 400
@@ -119,6 +120,9 @@ def read(folder):
         degrees = re.search(r"\(Student, ([0-9.]+) degrees\)", error.description)
         name = os.path.basename(path)[:-len("_error.img")]
         pictures[name] = Picture([list(b) for b in value.values], [list(b) for b in error.values], float(degrees[1]) if degrees else 3.0)
+    for path in sorted(glob.glob(folder + "/*_response.h5")):
+        name, picture = photons_of(path, Picture)
+        pictures[name] = picture
     if not pictures:
-        raise Refused(0, "no NAME_error.img was written")
+        raise Refused(0, "no NAME_error.img and no NAME_response.h5 was written")
     return pictures

@@ -9,6 +9,7 @@ from typing import Callable, Dict, FrozenSet, List, Optional
 import change
 import change_sensor
 import judge
+import lidar
 import rewrite
 from world import band_mean, planck
 
@@ -35,6 +36,7 @@ class Relation:
     traits: FrozenSet[str] = field(default_factory=frozenset)
     paths: int = 4
     seconds: float = SECONDS
+    quick: bool = True                  # among the relations of the default tests
 
 
 def pixels_of(sensor):
@@ -151,6 +153,21 @@ def same_bytes(world, rng):
     return Case([(1, world)], exact=exact, note=what)
 
 
+def radar(world, rng):
+    """A laser radar in place of the sensors: twice the energy, another gate or other bins, the same world in other words."""
+    made = rng.choice((lidar.twice_the_energy, lidar.moved_gate, lidar.same_world, lidar.same_world))(world, rng)
+    return made and Case(made[0], note=made[1])
+
+
+def radar_ends(world, rng):
+    """Paths from the laser and from the receiver, or all bins and a camera under a lamp in the laser's place."""
+    terms, note = (lidar.steady_image if rng.random() < 0.4 else lidar.other_start)(world, rng)
+    return Case(terms, note=note, tolerance=LAMP if "camera" in note else judge.TOLERANCE)
+
+
+LAMP = 5e-4  # a spot lamp is even over angles, a top hat over the plane: 1.5 times the square of 10 mrad at its edge; and wavelengths of a band
+
+
 def frozen(*traits):
     return frozenset(traits)
 
@@ -173,16 +190,20 @@ RELATIONS = {r.name: r for r in (
     Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "moved", "still_world", "no_room", "no_profile")),
     Relation("reciprocity", reciprocity, 2, frozen("reciprocal", "still_world", "no_profile"), seconds=5 * SECONDS),
     Relation("same_bytes", same_bytes, 1),
+    Relation("radar", radar, 2, frozen("later"), paths=8, seconds=2 * SECONDS, quick=False),
+    Relation("radar_ends", radar_ends, 2, frozen("reciprocal", "still_world", "no_profile"), paths=8, seconds=2 * SECONDS, quick=False),
 )}
 
 
 def relation_of(seed, only=None):
-    """The relation of a world by its seed: by weights, in an order that serves every run of seeds alike."""
-    if only:
+    """The relation of a world by its seed: by weights, in an order that serves every run of seeds alike. only: its name, or 'quick':
+    among those of the default tests."""
+    if only and only != "quick":
         return RELATIONS[only]
-    total = sum(r.weight for r in RELATIONS.values())
+    among = [r for r in RELATIONS.values() if r.quick or not only]
+    total = sum(r.weight for r in among)
     at = (seed * 0.6180339887498949) % 1.0 * total
-    for r in RELATIONS.values():
+    for r in among:
         at -= r.weight
         if at < 0:
             return r

@@ -139,6 +139,56 @@ detectors: [{kind: linear, name: points, quantum_efficiency: 0.8, receiver_fwhm_
   EXPECT_EQ(a, b);
 }
 
+// Text of a fast survey without detectors, most of whose shots leave no scanner.
+constexpr const char* kGaps = R"(scene: scene.h5
+sensors:
+  - kind: lidar
+    name: als
+    motion: {kind: straight, position_m: [100000, -15, 400], heading_deg: 0, speed_m_s: 60}
+    tasks: [{start: 0, stop: 0.5}]
+    laser: {wavelength_um: 1.064, pulse_energy_j: 2.0e-5, rate_hz: 80000, beam: {kind: gaussian, full_angle_1_e2_mrad: 0.1}}
+    receiver: {aperture_mm: 100, field_of_view_mrad: 1.5, filter_nm: 1}
+    scanner: {kind: sweep, half_angle_deg: 3, rate_hz: 20, from_deg: -1, to_deg: 2}
+    gate: {start_m: 385, stop_m: 410, bin_ns: 1}
+    orders: 1
+    paths: 2
+)";
+
+// A run that is stopped is gone on with, to the same values; shots without a beam are in no block and in no number.
+TEST_F(Lidar, InterruptedSurvey) {
+  write_file(folder_ / "gaps.yaml", kGaps);
+  ASSERT_EQ(run("gaps.yaml -o whole -q").code, 0);
+  const ResponseReader whole(folder_ / "whole/als_response.h5");
+  EXPECT_EQ(whole.pulses(), 20000u) << "half of the sweep is open";
+  EXPECT_FALSE(whole.unfinished());
+  EXPECT_EQ(run("gaps.yaml -o part --resume").code, 2) << "nothing to go on from";
+  const auto left = [&] {
+    const std::string path = folder_ / "part/als_response.unfinished.h5";
+    return file_exists(path) ? ResponseReader(path).pulses() : 0;
+  };
+  for (int k = 0; k < 40 && left() == 0 && !file_exists(folder_ / "part/als_response.h5"); ++k)
+    run_command("cd '" + folder_.path() + "' && { timeout -s INT " + std::to_string(0.03 + 0.02 * k) +
+                " " SUITE_BIN_DIR "/dirsig-render gaps.yaml -o part -q; }");
+  if (left() == 0) GTEST_SKIP() << "no signal came while pulses were traced";
+  EXPECT_LT(left(), whole.pulses());
+  const CommandResult other = run("gaps.yaml -o part --resume --seed 5");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.err, HasSubstr("is of another run"));
+  ASSERT_EQ(run("gaps.yaml -o part --resume -q").code, 0);
+  EXPECT_FALSE(file_exists(folder_ / "part/als_response.unfinished.h5"));
+  const ResponseReader joined(folder_ / "part/als_response.h5");
+  ASSERT_EQ(joined.blocks(), whole.blocks());
+  for (size_t b = 0; b < whole.blocks(); ++b) {
+    const ResponseBlock one = whole.block(b), two = joined.block(b);
+    EXPECT_EQ(one.bin, two.bin);
+    EXPECT_EQ(one.value, two.value);
+    EXPECT_EQ(one.variance, two.variance);
+    EXPECT_EQ(one.skewness, two.skewness);
+    EXPECT_EQ(one.begin, two.begin);
+  }
+  EXPECT_THAT(run("gaps.yaml -o part --resume").err, HasSubstr("was finished before"));
+}
+
 TEST_F(Lidar, Refused) {
   const auto refused = [&](const std::string& arguments, int code, const std::string& text) {
     const CommandResult r = run(arguments);
@@ -158,7 +208,11 @@ TEST_F(Lidar, Refused) {
   refused("sim.yaml -o out --set 'sensors.als.output=[waveforms_h5]'", 1, "no detector has any");
   refused("sim.yaml -o out --set sensors.als.laser.rate_hz=400000", 1, "unambiguous range 374.741 m");
   refused("sim.yaml -o out --set 'periodic={origin_m: [0, 0], size_m: [9, 9]}'", 1, "is not traced for laser radars");
-  EXPECT_FALSE(file_exists(folder_ / "out/als_response.h5"));
+  refused(
+      "sim.yaml -o out --set 'sensors.als.receiver={aperture_mm: 100, array: {columns: 200, rows: 200, pitch_um: 50, "
+      "focal_length_mm: 400}}'",
+      1, "samples of all pixels");
+  EXPECT_FALSE(file_exists(folder_ / "out")) << "before a pulse is traced";
   const CommandResult dry = run("sim.yaml -o out --dry-run");
   EXPECT_EQ(dry.code, 0) << dry.err;
   EXPECT_THAT(dry.out, HasSubstr("laser radar 'als': 400 pulses"));

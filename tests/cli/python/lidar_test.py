@@ -35,6 +35,24 @@ class Lidar(Case):
         np.testing.assert_allclose(np.diff(points.gps_time), 0.01, atol=1e-6)
         self.assertIn("deviation_m", points)
         self.assertRaises(IndexError, rs.response_of, responses, 10)
+        # Within the process: the same bits, also of a part of the pulses.
+        with rs.open_lidar(self.folder / "out.yaml") as opened:
+            self.assertEqual((opened.pulses, opened.paths, opened.channels), (10, 8, ("single", "multiple")))
+            whole, part = opened.trace(), opened.trace(4, 3)
+            for name in whole.data_vars:
+                np.testing.assert_array_equal(whole[name], responses[name], name)
+            np.testing.assert_array_equal(part.time, whole.time[4:7])
+            of_part = (whole.entry_row.values >= 4) & (whole.entry_row.values < 7)
+            np.testing.assert_array_equal(part.value, whole.value[of_part])
+            other = opened.trace(seed=2)
+            self.assertFalse(np.array_equal(other.value, whole.value))
+            self.assertEqual(opened.trace(0, 0).sizes["pulse"], 0)
+            self.assertRaises(ValueError, opened.trace, paths=1)
+        self.assertRaises(ValueError, opened.trace)
+        with self.assertRaisesRegex(rs.InputError, "no sensor of radiance"):
+            rs.open_simulation(self.folder / "out.yaml")
+        with self.assertRaisesRegex(rs.InputError, "no laser radar 'x'"):
+            rs.open_lidar(self.folder / "out.yaml", "x")
 
     def test_other_files_are_refused(self):
         self.assertRaises(FileNotFoundError, rs.open_response, self.folder / "none.h5")

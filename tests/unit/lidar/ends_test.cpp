@@ -127,6 +127,31 @@ TEST(LidarEnds, AgreeOverACloud) {
   expect_same(scene, lidar, "cloud");
 }
 
+// A sea of slope variance s2 = 0.003 + 0.00512 U sends f cos = F_0 exp(-tan^2 a / s2) / (4 pi s2 cos^5 a) straight back
+// (Cox & Munk 1954), whichever end begins: U = 7 m/s, n = 1.338.
+TEST(LidarEnds, TheSeaSendsItsGlitterBack) {
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {
+      material("sea", {"sea", {{"wind_m_s", 7}, {"whitecaps", 0}}, {{"index", Curve::constant(1.338)}}, {}, nullptr})};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0);
+  check_scene(*scene, "sea");
+  const double H = 1000;
+  for (const auto& [angle, expected] :
+       {std::pair{0.0, 0.042821}, {3.0, 0.040172}, {10.0, 0.020761}, {20.0, 0.0019295}}) {
+    const double R = H / std::cos(angle * kDegree);
+    for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+      DownLidar lidar(H, 8);
+      lidar.laser.offset = lidar.receiver.offset = {quat_about({0, 1, 0}, angle * kDegree), {}};
+      lidar.laser.beam.full_angle_1_e2 = 1e-4;
+      lidar.receiver.field_of_view = 2e-3;
+      lidar.gate_of(R - 10, R + 10, 1e-9);
+      lidar.orders = 1, lidar.start_from = from;
+      const double unit = lidar.photons() * kPi * lidar.receiver.aperture * lidar.receiver.aperture / 4 / (R * R);
+      EXPECT_NEAR(receive(scene, lidar).rows().mean() / unit, expected, 0.01 * expected) << angle;
+    }
+  }
+}
+
 // A spot of the same angle and power as a top hat of one joule, a camera of one pixel: the sum over all range bins.
 // (The beam is even over the plane, the spot over the sphere: they differ by 1.5 % at the edge.)
 void expect_steady_image(const std::shared_ptr<const Scene>& scene, double least_multiple) {

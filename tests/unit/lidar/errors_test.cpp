@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "math/sampling.h"
 #include "motion/track.h"
 #include "tests/support/lidar_kit.h"
 #include "tests/support/message_of.h"
@@ -15,19 +16,25 @@ std::shared_ptr<Scene> plate(double reflectance, double half = 1000) {
   return scene_of({quad(half, 0, 0)}, {material("plate", lambert(reflectance))});
 }
 
-// Share of the rows, each an experiment of its own, whose interval holds the mean of all; of bins with at least 30
-// contributions. 16 scrambles: Student's t of 15 degrees of freedom, 2.1314 at 95 %.
-double covered(const std::shared_ptr<const Scene>& scene, const LidarInstrument& lidar, int& intervals) {
-  const Received got = receive(scene, lidar);
-  const size_t channels = got.head.channels.size();
+// Over many rows, each an experiment of its own: how often the 95 % interval of a bin holds the mean of all rows. Of
+// all light and of both channels apart, bins with at least 30 contributions.
+struct Covered {
+  int intervals = 0, held = 0, student = 0;  // student: by so many standard errors to either side
+  double share() const { return static_cast<double>(held) / intervals; }
+};
+enum class Of { all_light, single, multiple };
+Covered covered(const Received& got, Of what) {
+  const size_t channels = got.head.channels.size(), c = what == Of::multiple ? kMultiple : kSingle;
   std::map<uint32_t, RunningStats> truth;
   size_t rows = 0;
   for (const ResponseBlock& b : got.blocks) {
     rows += b.row_count();
-    for (size_t e = 0; e < b.entries(); ++e) truth[b.bin[e]].add(b.value[e * channels] + b.value[e * channels + 1]);
+    for (size_t e = 0; e < b.entries(); ++e)
+      truth[b.bin[e]].add(what == Of::all_light ? b.value[e * channels] + b.value[e * channels + 1]
+                                                : b.value[e * channels + c]);
   }
-  int inside = 0;
-  intervals = 0;
+  const double t = student_t_quantile(0.95, got.head.scrambles - 1);
+  Covered n;
   for (const ResponseBlock& b : got.blocks)
     for (size_t r = 0; r < b.row_count(); ++r) {
       const ResponseRow row(got.head, b, r);
@@ -35,53 +42,113 @@ double covered(const std::shared_ptr<const Scene>& scene, const LidarInstrument&
         const RunningStats& all = truth[row.bin(k)];
         if (row.contributions(k) < 30 || all.n() < rows || !(all.variance() > 1e-12 * all.mean() * all.mean()))
           continue;
-        ++intervals;
-        inside += std::fabs(row.photons(k) - all.mean()) <= 2.1314 * std::sqrt(row.photon_variance(k));
+        const bool light = what == Of::all_light;
+        if (!light && !(row.variance(k, c) > 0)) continue;
+        const BinInterval i = light ? row.photon_interval(k) : row.interval(k, c);
+        const double value = light ? row.photons(k) : row.value(k, c),
+                     error = std::sqrt(light ? row.photon_variance(k) : row.variance(k, c));
+        ++n.intervals;
+        n.held += i.low <= all.mean() && all.mean() <= i.high;
+        n.student += std::fabs(value - all.mean()) <= t * error;
       }
     }
-  return static_cast<double>(inside) / intervals;
+  return n;
+}
+
+std::shared_ptr<Scene> room() {
+  return scene_of({box({-6, -5, 0}, {5, 6, 12}, 0, false), box({-0.5, -0.3, 0}, {0.2, 0.3, 2}, 0, true)},
+                  {material("wall", lambert(0.6))});
+}
+
+// Disks of 15 cm radius over soil.
+std::shared_ptr<Scene> leaves() {
+  auto scene = scene_of({quad(1000, 0, 0)}, {material("soil", lambert(0.3)), material("leaf", lambert(0.45, 0.4))});
+  Pcg32 random(5);
+  for (int i = 0; i < 600; ++i) {
+    const Vec3 at{6 * random.uniform() - 3, 6 * random.uniform() - 3, 1 + 8 * random.uniform()};
+    const Dir n = uniform_sphere({random.uniform(), random.uniform()});
+    const Vec3 axis = cross({0, 0, 1}, n);
+    const double s = length(axis);
+    const Affine3 turn = s > 0 ? rotation(axis / s, angle_between({0, 0, 1}, n)) : Affine3{};
+    place(*scene, PrimitiveKind::disk, {0.15, 0}, 1, translation(at) * turn);
+  }
+  check_scene(*scene, "leaves");
+  return scene;
+}
+
+DownLidar over_leaves(uint64_t pulses, uint32_t paths) {
+  DownLidar lidar(60, pulses);
+  lidar.laser.beam.full_angle_1_e2 = 0.02;
+  lidar.receiver.field_of_view = 0.04, lidar.receiver.aperture = 0.2;
+  lidar.gate_of(45, 75, 2e-9);
+  lidar.paths = paths;
+  return lidar;
+}
+
+DownLidar in_room(uint64_t pulses, uint32_t paths, double bin) {
+  DownLidar lidar(10, pulses);
+  lidar.laser.beam.full_angle_1_e2 = 0.1;
+  lidar.receiver.field_of_view = 0.4;
+  lidar.paths = paths, lidar.orders = 4;
+  lidar.gate_of(0, 20, bin);
+  return lidar;
 }
 
 // With n intervals of 95 % the share has a standard deviation of sqrt(0.05 0.95 / n), times some for bins that share
-// paths; thousands of intervals are compared.
+// paths; thousands of intervals are compared. Multiple scattering is so skewed that Student's interval does not cover
+// it (negative control).
 TEST(LidarErrors, IntervalsCoverWhatTheySay) {
-  DownLidar lidar(10, 400);
-  lidar.laser.beam.full_angle_1_e2 = 0.1;
-  lidar.receiver.field_of_view = 0.4;
-  lidar.paths = 512, lidar.orders = 4;
-  lidar.gate_of(0, 20, 4e-9);
-  const auto room = scene_of({box({-6, -5, 0}, {5, 6, 12}, 0, false), box({-0.5, -0.3, 0}, {0.2, 0.3, 2}, 0, true)},
-                             {material("wall", lambert(0.6))});
-  const auto hills = scene_of({mesh_of({{-9, -9, -9}, {9, -9, 9}, {9, 9, 9}, {-9, 9, -9}}, {0, 1, 2, 0, 2, 3}, 0)},
-                              {material("soil", lambert(0.4))});
-  const std::shared_ptr<Scene> fog = slab_scene(medium(Curve::constant(0.05), Curve::constant(0.4), hg(0.3)), 6);
-  int n = 0;
-  for (const auto& [name, scene] : {std::pair{"room", room}, {"hills", hills}, {"fog", fog}}) {
-    if (scene == fog) {  // its orders need paths: those of single scattering are counted, too
-      lidar.train->count = 250;
-      lidar.paths = 2048;
-      lidar.gate_of(0, 20, 2e-8);
+  const auto fog = slab_scene(medium(Curve::constant(0.05), Curve::constant(0.4), hg(0.3)), 6);
+  const struct {
+    const char* name;
+    std::shared_ptr<Scene> scene;
+    DownLidar lidar;
+  } cases[] = {{"room", room(), in_room(200, 512, 4e-9)},
+               {"leaves", leaves(), over_leaves(300, 256)},
+               {"fog", fog, in_room(250, 512, 2e-8)}};
+  for (const auto& c : cases) {
+    const Received got = receive(c.scene, c.lidar);
+    for (const Of what : {Of::all_light, Of::single, Of::multiple}) {
+      const Covered n = covered(got, what);
+      if (n.intervals < 500) continue;
+      std::printf("%s %d: %.4f of %d intervals, Student's %.4f\n", c.name, static_cast<int>(what), n.share(),
+                  n.intervals, static_cast<double>(n.student) / n.intervals);
+      EXPECT_GT(n.share(), 0.93) << c.name << " " << n.intervals;
+      EXPECT_LT(n.share(), 0.97) << c.name << " " << n.intervals;
+      if (what == Of::multiple && c.scene != cases[0].scene) {
+        EXPECT_LT(n.student, 0.93 * n.intervals) << c.name;
+      }
     }
-    const double share = covered(scene, lidar, n);
-    EXPECT_GT(n, 500) << name;
-    std::printf("%s: %.4f of %d intervals\n", name, share, n);
-    EXPECT_GT(share, 0.93) << name << " " << n;
-    EXPECT_LT(share, 0.97) << name << " " << n;
   }
 }
 
-// A bin that no path has reached is not known to be dark.
+// A bin that no path has reached is not known to be dark: of 100 rows in which a bin was not reached although light
+// comes there, at most 5 may have more in it than the bound says. The truth is the mean of all rows.
 TEST(LidarErrors, BinsThatNoPathReachedHaveABound) {
-  DownLidar lidar(100, 1);
-  lidar.laser.beam.full_angle_1_e2 = 1e-3;
-  lidar.receiver.field_of_view = 2e-3;
-  lidar.gate_of(90, 110, 1e-9);
-  const Received got = receive(plate(0.3), lidar);
-  const ResponseRow row(got.head, got.blocks.at(0), 0);
-  const BinKnown dark = row.known(1);
-  EXPECT_FALSE(dark.reached);
-  EXPECT_GT(dark.bound, 0);
-  EXPECT_LT(dark.bound, got.total().photons);
+  const Received got = receive(leaves(), over_leaves(2000, 16));
+  const size_t channels = got.head.channels.size();
+  std::vector<double> truth(got.head.bins + 1);
+  size_t rows = 0;
+  for (const ResponseBlock& b : got.blocks) {
+    rows += b.row_count();
+    for (size_t e = 0; e < b.entries(); ++e) truth[b.bin[e]] += b.value[e * channels] + b.value[e * channels + 1];
+  }
+  for (double& v : truth) v /= static_cast<double>(rows);
+  int dark = 0, above = 0, flagged = 0;
+  for (const ResponseBlock& b : got.blocks)
+    for (size_t r = 0; r < b.row_count(); ++r) {
+      const ResponseRow row(got.head, b, r);
+      for (uint32_t bin = 1; bin <= got.head.bins; ++bin) {
+        const BinKnown known = row.known(bin);
+        if (known.reached || !(truth[bin] > 0)) continue;
+        EXPECT_EQ(known.interval.high, known.bound);
+        ++dark, flagged += known.bound > 0, above += truth[bin] > known.bound;
+      }
+    }
+  std::printf("%d bins not reached, %d with more than the bound\n", dark, above);
+  EXPECT_GT(dark, 10000);
+  EXPECT_EQ(flagged, dark);
+  EXPECT_LT(above, 0.05 * dark);
 }
 
 TEST(LidarExtremes, ABeamWithoutWidthIsANarrowOne) {
@@ -251,8 +318,11 @@ TEST(LidarErrors, FaultsAreTold) {
   lidar.receiver.rows = 4, lidar.receiver.pitch = 1e-5, lidar.receiver.focal = 0.1, lidar.receiver.columns = 4000000;
   EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("at most 1e7"), std::string::npos);
   lidar.receiver.columns = 0;
-  lidar.laser.stokes = {1, 1, 0, 0};
-  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("polarisation is not traced"), std::string::npos);
+  lidar.laser.stokes = {1, 1, 0.5, 0};
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("Q2 + U2 + V2 at most 1"), std::string::npos);
+  lidar.laser.stokes = {1, 1, 0, 0}, lidar.start_from = StartFrom::laser;
+  EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("begin at the receiver"), std::string::npos);
+  lidar.start_from = StartFrom::automatic;
   lidar.laser.stokes = {1, 0, 0, 0};
   lidar.tags = {"roof"};
   EXPECT_NE(message_of([&] { receive(plate(0.3), lidar); }).find("no tag and no material 'roof'"), std::string::npos);

@@ -99,7 +99,9 @@ TEST(LidarText, Refused) {
   refused({"laser.rate_khz=3"}, "unknown key 'rate_khz'", "rate_hz");
   refused({"laser.pulse_energy_j=null"}, "pulse_energy_j");
   refused({"laser.average_power_w=3"}, "exclude each other");
-  refused({"laser.stokes=[1, 0.5, 0, 0]"}, "polarised lasers are not traced");
+  refused({"laser.stokes=[1, 0.5, 0, 0]", "start_from=laser"}, "begin at the receiver");
+  refused({"receiver.analysers=[linear_0, linear_30]"}, "linear_30", "linear_0");
+  refused({"receiver.analysers=[linear_0, linear_0]"}, "twice");
   refused({"laser.stokes=[1, 1, 1, 0]"}, "no light");
   refused({"receiver.aperture_mm=0"}, "outside");
   refused({"receiver.array={columns: 4, rows: 4, pitch_um: 50, focal_length_mm: 400}"}, "exclude each other");

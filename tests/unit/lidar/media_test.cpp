@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "tests/support/lidar_kit.h"
 
@@ -166,31 +167,58 @@ TEST(LidarMedia, AbsorptionWeakensEveryBinByItsTime) {
   EXPECT_GT(compared, 1500);
 }
 
-// An isotropic half space under a wide field: all orders together are f = w H(1)^2 / (8 pi), with Chandrasekhar's H(1)
-// = 1.251260, 1.850099, 2.472793, 2.907811; the single part is w / (8 pi).
-TEST(LidarMedia, AHalfSpaceReturnsItsReflectance) {
-  const double R = 1000, scattering = 1000;
-  const struct {
-    double albedo, H1;
-    uint32_t orders;
-    uint32_t paths;
-  } cases[] = {
-      {0.5, 1.251260, 64, 512}, {0.9, 1.850099, 400, 1024}, {0.99, 2.472793, 4000, 256}, {1, 2.907811, 1000000, 16}};
-  for (const auto& c : cases) {
-    DownLidar lidar(R, 64);
-    lidar.laser.beam.full_angle_1_e2 = 1e-4;
-    lidar.receiver.field_of_view = 2e-2;
-    lidar.gate_of(R - 1, R + 100000, 1e-6);
-    lidar.paths = c.paths, lidar.orders = c.orders;
-    const Received got = receive(half_space(scattering * c.albedo, scattering * (1 - c.albedo)), lidar);
-    const double unit = lidar.photons() * kPi * lidar.receiver.aperture * lidar.receiver.aperture / 4 / (R * R);
-    const double expected = c.albedo * c.H1 * c.H1 / (8 * kPi);
-    const RunningStats rows = got.rows();
-    EXPECT_NEAR(rows.mean() / unit, expected, std::max(5e-3 * expected, 4 * rows.stderr_of_mean() / unit)) << c.albedo;
-    const auto single = got.total(kSingle);
-    EXPECT_NEAR(single.photons / 64 / unit, c.albedo / (8 * kPi), 4 * single.error() / 64 / unit + 1e-5 * c.albedo)
-        << c.albedo;
+// An isotropic half space under a wide field: all orders together are f = w H(mu_0) H(mu) / (4 pi (mu + mu_0)), with
+// Chandrasekhar's H; the single part is w / (4 pi (mu + mu_0)). The laser is met at mu_0, the receiver looks down.
+// Expected: f, 16 significant digits by quadrature. Of a share of 1 the gate and the last order cut off less than 1e-3.
+struct HalfSpace {
+  double mu_0, albedo, expected;
+  uint32_t orders, paths, pulses;
+};
+void check_half_space(const HalfSpace& c, double within) {
+  const double R = 1000, scattering = 1000, slant = std::acos(c.mu_0);
+  DownLidar lidar(R, c.pulses);
+  lidar.laser.beam.full_angle_1_e2 = 1e-4;
+  lidar.laser.offset = {quat_about({0, 1, 0}, slant), {R * std::tan(slant), 0, 0}};
+  lidar.receiver.field_of_view = 2e-2;
+  lidar.gate_of(R - 1, R + 100000, 1e-6);
+  lidar.paths = c.paths, lidar.orders = c.orders;
+  const Received got = receive(half_space(scattering * c.albedo, scattering * (1 - c.albedo)), lidar);
+  const double unit = lidar.photons() * kPi * lidar.receiver.aperture * lidar.receiver.aperture / 4 / (R * R);
+  const RunningStats rows = got.rows();
+  const double error = rows.stderr_of_mean() / unit;
+  if (within > 0) {
+    std::printf("albedo %g at %g: %.7g +- %.2g, expected %.7g (%+.3f %%)\n", c.albedo, c.mu_0, rows.mean() / unit,
+                error, c.expected, 100 * (rows.mean() / unit / c.expected - 1));
+    EXPECT_LT(3 * error, within * c.expected) << "the bound is that of the noise";
+    EXPECT_NEAR(rows.mean() / unit, c.expected, within * c.expected) << c.albedo;
+  } else {
+    EXPECT_NEAR(rows.mean() / unit, c.expected, 4 * error + 1e-3 * c.expected) << c.albedo;
   }
+  const auto single = got.total(kSingle);
+  const double once = c.albedo / (4 * kPi * (1 + c.mu_0));
+  EXPECT_NEAR(single.photons / c.pulses / unit, once, 4 * single.error() / c.pulses / unit + 1e-5 * once) << c.albedo;
+}
+
+TEST(LidarMedia, AHalfSpaceReturnsItsReflectance) {
+  for (const HalfSpace& c : {HalfSpace{1, 0.5, 0.0311476, 64, 512, 64},
+                             {1, 0.9, 0.1225723, 400, 1024, 64},
+                             {1, 0.99, 0.2408634, 4000, 256, 64},
+                             {1, 1, 0.3364282, 1000000, 16, 64}})
+    check_half_space(c, 0);
+}
+
+// Four albedos, two slants, within 0.5 % that are known to a third of that.
+TEST(LidarMedia, HalfSpacesToHalfAPercent) {
+  if (!std::getenv("SUITE_LONG")) GTEST_SKIP() << "in the long run";
+  for (const HalfSpace& c : {HalfSpace{1, 0.5, 0.0311476, 64, 1024, 256},
+                             {1, 0.9, 0.1225723, 400, 1024, 512},
+                             {1, 0.99, 0.2408634, 4000, 1024, 512},
+                             {1, 1, 0.3364282, 1000000, 512, 512},
+                             {0.5, 0.5, 0.0394217, 64, 1024, 256},
+                             {0.5, 0.9, 0.1374533, 400, 1024, 512},
+                             {0.5, 0.99, 0.2400850, 4000, 1024, 512},
+                             {0.5, 1, 0.3104996, 1000000, 512, 512}})
+    check_half_space(c, 5e-3);
 }
 
 // Paths that are scattered for certain in thin matter bring the same light of further orders, with less noise.
