@@ -10,14 +10,15 @@ from typing import Any, Mapping
 
 from ..tree import FileName
 from .draws import hashed
-from .objects import Group, read_objects
+from .objects import Group, keypoints_of, read_objects
 from .places import NoSuchPlace, put
+from .sequence import Frames, read_frames
 from .settings import Labels, Picture, read_formats, read_keep, read_labels, read_picture
 from .text import CampaignError, Node, read_text
 from .variables import Draw, Variables, read_variables
 
 KEYS = ("campaign", "name", "description", "license", "seed", "samples", "scene", "simulation", "vary", "objects", "picture", "labels", "formats",
-        "keep")
+        "keep", "sequence")
 MOST_SAMPLES = 10_000_000
 
 
@@ -43,12 +44,22 @@ class Campaign:
     keep: tuple[str, ...]
     digest: str
     """Of the three texts."""
+    keypoints: dict[str, list[str]]
+    """Names, of the classes that have some."""
+    frames: Frames
 
     @property
     def classes(self) -> list[str]:
         """Names of the classes, in the order of their numbers from 1."""
         there = list(dict.fromkeys(item.class_name for group in self.groups for item in group.items))
         return [*self.labels.classes, *(c for c in there if c not in self.labels.classes)]
+
+    @property
+    def stuff(self) -> dict[str, str]:
+        """The class of the ground of every material of the scene's text that has one, in the order of the classes."""
+        if self.labels.stuff is None:
+            return {name: name for name in self.scene.get("materials", {})}
+        return {material: name for name, materials in self.labels.stuff.items() for material in materials}
 
     @property
     def scenes_return(self) -> bool:
@@ -83,7 +94,7 @@ def read_campaign(path: FileName) -> Campaign:
     path = Path(path)
     scene_path, scene = _template(keys["scene"], path.parent, "world")
     simulation_path, simulation = _template(keys["simulation"], path.parent, "sensors")
-    variables = read_variables(keys.get("vary"))
+    variables = read_variables(keys.get("vary"), scene.get("curves") if isinstance(scene.get("curves"), dict) else {})
     for name, rule in variables.rules.items():
         if "." in name and name.partition(".")[0] not in ("scene", "simulation"):
             raise rule.node.error(f"'{name}' is in neither text", "scene.PLACE, simulation.PLACE, or a name without dots")
@@ -95,7 +106,8 @@ def read_campaign(path: FileName) -> Campaign:
         path, keys["name"].text() if "name" in keys else path.stem, keys["description"].text() if "description" in keys else "",
         keys["license"].text() if "license" in keys else "", keys["seed"].integer(0, (1 << 53) - 1) if "seed" in keys else 1,
         keys["samples"].integer(1, MOST_SAMPLES), scene, simulation, scene_path, simulation_path, variables, groups,
-        read_picture(keys.get("picture")), read_labels(keys.get("labels")), read_formats(keys.get("formats")), read_keep(keys.get("keep")), digest)
+        read_picture(keys.get("picture")), read_labels(keys.get("labels")), read_formats(keys.get("formats")), read_keep(keys.get("keep")), digest,
+        keypoints_of(groups), read_frames(keys.get("sequence"), simulation))
     campaign.texts(campaign.draw(0))
     return campaign
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any, Iterable, Iterator
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,12 @@ class Image:
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
         return int(self.about["width"]), int(self.about["height"])
+
+
+def joined(entries: Iterable[dict[str, Any]]) -> Iterator[str]:
+    """Entries of a JSON list, a line each."""
+    for i, entry in enumerate(entries):
+        yield (",\n" if i else "\n") + json.dumps(entry)
 
 
 def finished(folder: Path) -> list[int]:

@@ -14,7 +14,7 @@ from ..programs import run_program
 from .campaign import Campaign
 from .exports import images
 from .sample import Maker, refusal
-from .shared import UNUSED, with_files, write_tree
+from .shared import UNUSED, with_files, write_json
 from .figures import statistics
 from .text import CampaignError, Refused
 
@@ -78,7 +78,7 @@ def check_ends(campaign: Campaign, version: str) -> None:
                     if tree == before:
                         continue
                     whole = tree if text == "scene" else {**parts, **{k: v for k, v in with_files(tree, campaign.simulation_path.parent).items() if k != "scene"}}
-                    write_tree(whole, folder / "checked.yaml")
+                    write_json(whole, folder / "checked.yaml")
                     if said := _refused(program, folder, campaign):
                         raise rule.node.error(f"'{key}' of {value!r}, which this distribution reaches, is refused: {said}", "a narrower distribution")
 

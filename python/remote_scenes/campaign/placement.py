@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import count
 from typing import Any, Callable, Iterator, Mapping, Sequence
 
+from .distributions import Rule
 from .draws import unit
 from .objects import Group, Item
 from .regions import Point, Slots
@@ -18,7 +19,7 @@ MOST_OBJECTS = 100_000
 
 @dataclass(frozen=True)
 class Placed:
-    """One object. tag: of it alone in the truth; heading_deg: compass, of its +y axis; materials: what stands for those of its item."""
+    """One object. tag: of it alone in the truth; heading_deg: compass, of its +y axis; materials: those of its item that others stand for."""
 
     tag: str
     group: str
@@ -28,7 +29,18 @@ class Placed:
     position_m: tuple[float, float, float]
     heading_deg: float
     scale: float
-    materials: Mapping[str, str]
+    materials: Mapping[str, str | dict[str, Any]]
+    """What stands for a material: the name of another one, or a material of this object alone."""
+    speed_m_s: float = 0.0
+    """Along the heading; position_m is that of second 0."""
+    keypoints: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    """In the object's frame, m."""
+
+    def at(self, time_s: float) -> tuple[float, float, float]:
+        """Where it is at a time."""
+        a, way = math.radians(self.heading_deg), self.speed_m_s * time_s
+        x, y, z = self.position_m
+        return (x + way * math.sin(a), y + way * math.cos(a), z) if way else self.position_m
 
 
 class ObjectDraw:
@@ -109,7 +121,7 @@ def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bound
             scale = _number(item.scale, context) if item.scale else 1.0
             if not 1e-6 <= scale <= 1e6:
                 raise item.node.error(f"sample {draw.sample}: the scale {scale:g} is out of range", "1e-06 to 1e+06")
-            materials = {key: str(rule.value(context)) for key, rule in item.materials.items()}
+            materials = {key: _material(rule, context) for key, rule in item.materials.items()}
             box = bounds(item.place)
             x, y, heading = _find(group, number, context, draw, box, scale, taken, slots)
             z = _number(group.height, context) if group.height else ground(group.on, x, y)
@@ -117,7 +129,8 @@ def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bound
                 raise group.node.error(f"sample {draw.sample}: nothing is below object {number} of '{group.name}' at ({x:.2f}, {y:.2f})",
                                        "ground there, or a `height_m`")
             tag = f"{item.class_name}.{len(out) + 1}"
-            out.append(Placed(tag, group.name, item.name, item.class_name, item.place, (x, y, z), heading, scale, materials))
+            out.append(Placed(tag, group.name, item.name, item.class_name, item.place, (x, y, z), heading, scale, materials,
+                              _number(group.speed, context) if group.speed else 0.0, item.keypoints))
     return out
 
 
@@ -139,6 +152,13 @@ def _item(group: Group, context: ObjectDraw) -> Item:
         if item.weight > 0 and u < at:
             return item
     return [i for i in group.items if i.weight > 0][-1]
+
+
+def _material(rule: Rule, context: ObjectDraw) -> str | dict[str, Any]:
+    value = rule.value(context)
+    if not isinstance(value, (str, dict)):
+        raise rule.node.error(f"{value!r} is no material", "the name of one of the scene, or {material: {model: ..., ...}}")
+    return value
 
 
 def _number(rule: Any, context: ObjectDraw) -> float:

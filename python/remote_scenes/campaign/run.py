@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable
@@ -15,7 +16,9 @@ from .croissant import write_croissant
 from .engine import Tally, Tell, of_shard, prepare_folder, run_samples
 from .exports import finished, images
 from .forecast import check_ends
+from .kitti import write_kitti
 from .label_files import write_coco, write_dota, write_geojson, write_yolo, write_yolo_obb
+from .panoptic import write_panoptic
 from .sheet import write_sheet
 from .stac import write_stac
 from .text import CampaignError
@@ -23,7 +26,7 @@ from .webdataset import write_webdataset
 
 PREVIEWED = 12
 _WRITERS: dict[str, Callable[[Campaign, Path], None]] = {
-    "coco": write_coco, "dota": write_dota, "yolo": write_yolo, "yolo_obb": write_yolo_obb, "geojson": write_geojson,
+    "coco": write_coco, "panoptic": write_panoptic, "dota": write_dota, "yolo": write_yolo, "yolo_obb": write_yolo_obb, "kitti": write_kitti, "geojson": write_geojson,
     "webdataset": write_webdataset, "stac": write_stac}
 
 
@@ -37,9 +40,10 @@ class Outcome:
 
 
 def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None = None, shard: tuple[int, int] = (1, 1),
-        tell: Tell | None = None) -> Outcome:
+        tell: Tell | None = None, executor: Executor | None = None) -> Outcome:
     """Makes the samples of a campaign that are not there yet, and writes its lists when all are. workers: processes, one per core unless given,
-    0 = within this process; shard: (i, n), every n-th sample from the i-th on. CampaignError: something is refused; what is finished stays."""
+    0 = within this process; shard: (i, n), every n-th sample from the i-th on; executor: makes samples in place of workers, where the same files are
+    seen (concurrent.futures; of Dask `Client.get_executor()`). CampaignError: something is refused; what is finished stays."""
     campaign = campaign if isinstance(campaign, Campaign) else read_campaign(campaign)
     folder = Path(folder)
     if not 1 <= shard[0] <= shard[1]:
@@ -49,7 +53,8 @@ def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None 
     if not finished(folder):
         check_ends(campaign, version)
     try:
-        tally = run_samples(campaign, folder, of_shard(campaign.samples, shard), os.cpu_count() or 1 if workers is None else workers, version, speak)
+        tally = run_samples(campaign, folder, of_shard(campaign.samples, shard), os.cpu_count() or 1 if workers is None else workers, version, speak,
+                            executor)
         complete = len(finished(folder)) == campaign.samples
         if complete:
             _write_lists(campaign, folder, version)

@@ -8,7 +8,7 @@ import socket
 import warnings
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 import numpy as np
 import xarray as xr
@@ -20,16 +20,19 @@ from ..traced import TracedScene
 from .camera import Camera, camera_of, name_of
 from .campaign import Campaign, as_json
 from .earth import Frame
+from .flow import depth, flow, middles, write_flo, write_pfm
 from .labels import Sight, degrees, label_image, rounded
+from .panoptic import write_segments
 from .placement import Bounds, Placed, place_all
-from .shared import Shared, prepare_tree, with_files, write_tree
+from .shared import Shared, prepare_tree, with_files, write_json
 from .text import CampaignError
-from .things import ground_scene, item_scene, placed_scene
+from .things import backdrop_shapes, ground_scene, item_scene, placed_scene, whole_scene
 from .variables import Draw
 
 _TRUTH = ("tag", "tag_fraction", "instance", "range")
 _OF_SUN = ("incidence", "sun_visibility")
-_KEPT = {"image": ("",), "error": ("_error",), "quality": ("_quality",), "truth": ("_truth",), "classes": ("_tag", "_material")}
+_KEPT = {"image": ("",), "error": ("_error",), "quality": ("_quality",), "truth": ("_truth",), "classes": ("_tag", "_material"),
+         "depth": (), "flow": ()}
 HIGHEST_M = 1e5
 """Where rays begin that look for what is below an object."""
 
@@ -43,7 +46,10 @@ class Drawn:
     simulation: dict[str, Any]
     backdrop: Path
     things: Path | None
+    """Of the objects alone, or with the scene around them."""
     placed: list[Placed]
+    items: Callable[[str], TracedScene]
+    """What is placed, by the names that are placed, alone where it is defined."""
 
 
 class Maker:
@@ -80,36 +86,36 @@ class Maker:
             shutil.rmtree(new, ignore_errors=True)
         return target
 
-    def draw(self, sample: int, folder: Path) -> Drawn:
-        """Draws a sample, prepares its scenes, and writes simulation.yaml (and things.h5) into a folder, ready to be rendered."""
+    def draw(self, sample: int, folder: Path, write: Callable[[Any, Path], None] = write_json) -> Drawn:
+        """Draws a sample, prepares its scenes, and writes simulation.yaml (and what is prepared for it alone) into a folder, ready to be rendered. write:
+        how the text is written."""
         campaign = self.campaign
         draw = campaign.draw(sample)
         scene, simulation = campaign.texts(draw)
-        if self._scenes_return:
-            backdrop = self.shared.prepare(scene)
-        else:  # this sample's alone
-            backdrop = folder / "backdrop.h5"
-            prepare_tree(scene, backdrop, self._search)
-        placed: list[Placed] = []
-        things = None
+        # A scene that returns is prepared once, and the sample's objects beside it; one that does not is prepared with them, and only its shape once.
+        backdrop = self.shared.prepare(scene if self._scenes_return or not campaign.groups else backdrop_shapes(scene))
+        items, placed = self._items(scene), list[Placed]()
         if campaign.groups:
-            with self._opened(backdrop) as opened:
-                placed = place_all(campaign.groups, draw, lambda place: self._bounds(scene, place), lambda on, x, y: _ground(
-                    self.shared.open(self.shared.prepare(ground_scene(scene, on))) if on else opened, x, y))
-        if placed:
+            placed = place_all(campaign.groups, draw, lambda place: self._bounds(items, place), lambda on, x, y: _ground(
+                self.shared.open(self.shared.prepare(ground_scene(scene, on)) if on else backdrop), x, y))
+        things = None
+        if placed or not self._scenes_return:
             things = folder / "things.h5"
-            prepare_tree(placed_scene(scene, placed), things, self._search)
+            prepare_tree((placed_scene if self._scenes_return else whole_scene)(scene, placed), things, self._search)
         simulation = with_files(simulation, campaign.simulation_path.parent)
         if campaign.groups:
+            more = ("material",) if "panoptic" in campaign.formats else ()
             for sensor in simulation["sensors"]:
                 if sensor.get("kind") not in ("point", "goniometer", "rami"):
-                    wanted = [*(sensor.get("truth") or []), *_TRUTH, *(_OF_SUN if simulation.get("sun") else ())]
+                    wanted = [*(sensor.get("truth") or []), *_TRUTH, *(_OF_SUN if simulation.get("sun") else ()), *more]
                     sensor["truth"] = list(dict.fromkeys(wanted))
+        simulation["sensors"] = campaign.frames.expanded(simulation["sensors"])
         if "scenes" not in simulation:
             simulation.pop("scene", None)
-            simulation = {"scenes": [os.path.abspath(p) for p in (backdrop, things) if p], **simulation}
-        write_tree(simulation, folder / "simulation.yaml")
-        return Drawn(draw, scene, simulation, backdrop, things, placed)
+            rendered = (backdrop, things) if self._scenes_return else (things,)
+            simulation = {"scenes": [os.path.abspath(p) for p in rendered if p], **simulation}
+        write(simulation, folder / "simulation.yaml")
+        return Drawn(draw, scene, simulation, backdrop, things, placed, items)
 
     def _make(self, sample: int, new: Path) -> None:
         work = new / "work"
@@ -125,7 +131,7 @@ class Maker:
             except ValueError as wrong:
                 raise CampaignError(f"picture of '{name}': {wrong}", file=str(self.campaign.path)) from None
             _write_png(new / f"{name}.png", pixels)
-            images.append({**rounded(_about(name, dataset)), **self._seen(name, dataset, drawn)})
+            images.append({**rounded(_about(name, dataset)), **self._seen(name, dataset, drawn, new)})
             endings = [e for part in self.campaign.keep for e in _KEPT[part]]
             for file in (f"{name}{e}{kind}" for e in endings for kind in (".img", ".img.hdr", ".tif")):
                 if (work / "out" / file).exists():
@@ -134,33 +140,59 @@ class Maker:
                   "values": drawn.draw.known, "objects": [asdict(p) for p in drawn.placed], "images": images, "messages": messages}
         (new / "sample.json").write_text(as_json(record), encoding="utf-8")
 
-    def _seen(self, name: str, dataset: xr.Dataset, drawn: Drawn) -> dict[str, Any]:
-        """What an image shows: its labels, and where its corners are on the Earth."""
-        sensor: dict[str, Any] = next((s for s in drawn.simulation["sensors"] if name_of(s) == name), {})
-        camera, frame, settings = camera_of(sensor), _frame(drawn.scene), self.campaign.labels
+    def _seen(self, name: str, dataset: xr.Dataset, drawn: Drawn, new: Path) -> dict[str, Any]:
+        """What an image shows: its labels, and where its corners are on the Earth. Writes what is made by rays or of the truth into `new`."""
+        camera, frame, settings = _camera(name, drawn), _frame(drawn.scene), self.campaign.labels
         time = camera.time_s if camera else 0.0
-        with self._opened(drawn.backdrop, time) as backdrop:
-            corners = {"corners_lon_lat": _corners(camera, backdrop, frame)} if camera and frame else {}
-            if not drawn.things or "tag" not in dataset:
-                return {**corners, "labels": []}
-            items = {p.place: self._item(drawn.scene, p.place) for p in drawn.placed}
-            with TracedScene(drawn.things, time) as things:
-                sight = Sight(camera, things, backdrop, settings.rays) if camera else None
-                labels = label_image(dataset, drawn.placed, items, self.campaign.classes, sight, frame, settings.min_pixels, settings.segmentation)
-        return {**corners, "labels": labels}
+        with contextlib.ExitStack() as stack:
+            backdrop = self.shared.open(drawn.backdrop, time)
+            things = stack.enter_context(TracedScene(drawn.things, time)) if drawn.things else None
+            seen: dict[str, Any] = {"corners_lon_lat": _corners(camera, backdrop, frame)} if camera and frame else {}
+            if (number := self.campaign.frames.frame_of(name)) is not None:
+                seen["frame"] = number
+            if camera:
+                seen |= {"camera": rounded(camera.record())} if camera.record() else {}
+                self._by_rays(name, camera, drawn, things, backdrop, new)
+            if "panoptic" in self.campaign.formats and "material" in dataset and "tag" in dataset:
+                seen["segments"] = write_segments(dataset, drawn.placed, self.campaign.classes, self.campaign.stuff, new / f"{name}_panoptic.png")
+            if not things or "tag" not in dataset:
+                return {**seen, "labels": []}
+            items = {p.place: drawn.items(p.place) for p in drawn.placed}
+            sight = Sight(camera, things, backdrop, settings.rays) if camera else None
+            labels = label_image(dataset, drawn.placed, items, self.campaign.classes, sight, frame, settings.min_pixels, settings.segmentation)
+        return {**seen, "labels": labels}
 
-    def _opened(self, backdrop: Path, time_s: float = 0.0) -> contextlib.AbstractContextManager[TracedScene]:
-        """A backdrop: a shared one stays open, a sample's own is closed."""
-        return contextlib.nullcontext(self.shared.open(backdrop, time_s)) if self._scenes_return else TracedScene(backdrop, time_s)
+    def _by_rays(self, name: str, camera: Camera, drawn: Drawn, things: TracedScene | None, backdrop: TracedScene, new: Path) -> None:
+        """Depth, and the flow to the next frame, where they are to be kept."""
+        later = _camera(self.campaign.frames.next_of(name) or "", drawn) if "flow" in self.campaign.keep else None
+        if later or "depth" in self.campaign.keep:
+            places, tag, distance = middles(camera, things, backdrop)
+            if "depth" in self.campaign.keep:
+                write_pfm(new / f"{name}_depth.pfm", depth(camera, places, distance))
+            if later:
+                write_flo(new / f"{name}_flow.flo", flow(camera, later, places, tag, things.tags if things else (), drawn.placed))
 
-    def _item(self, scene: dict[str, Any], place: str) -> TracedScene:
-        return self.shared.open(self.shared.prepare(item_scene(scene, place)))
+    def _items(self, scene: dict[str, Any]) -> Callable[[str], TracedScene]:
+        """Opens what is placed; each of the names is looked for once a sample."""
+        known: dict[str, Path] = {}
 
-    def _bounds(self, scene: dict[str, Any], place: str) -> Bounds:
-        low, high = self._item(scene, place).bounds.tolist()
+        def item(place: str) -> TracedScene:
+            if place not in known:
+                known[place] = self.shared.prepare(item_scene(scene, place))
+            return self.shared.open(known[place])
+
+        return item
+
+    def _bounds(self, items: Callable[[str], TracedScene], place: str) -> Bounds:
+        low, high = items(place).bounds.tolist()
         if not all(abs(v) < 1e6 for v in (*low, *high)):
             raise CampaignError(f"'{place}' has no end, and cannot be placed as an object", "something with bounds", str(self.campaign.path))
         return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def _camera(name: str, drawn: Drawn) -> Camera | None:
+    """The geometry of the sensor whose image has this name."""
+    return camera_of(next((s for s in drawn.simulation["sensors"] if name_of(s) == name), {}))
 
 
 def _frame(scene: dict[str, Any]) -> Frame | None:

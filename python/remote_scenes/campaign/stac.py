@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from .campaign import Campaign
-from .engine import write_whole
 from .exports import Image, images
+from .whole_files import write_whole
 
 VERSION = "1.0.0"
 _NO_DATE = "1970-01-01T00:00:00Z"

@@ -59,9 +59,9 @@ class Draw:
         return self.sample // self.variables.axes[axis][1] % length
 
 
-def read_variables(node: Node | None) -> Variables:
-    """The map of variables. CampaignError: a name that is not there, a circle, axes of other lengths under one name."""
-    rules = {name: read_rule(inner, name) for name, inner in (node.map().items() if node else ())}
+def read_variables(node: Node | None, curves: Mapping[str, Any] | None = None) -> Variables:
+    """The map of variables; curves: those of the scene's text. CampaignError: a name that is not there, a circle, axes of other lengths under one name."""
+    rules = {name: read_rule(inner, name, curves) for name, inner in (node.map().items() if node else ())}
     axes: dict[str, tuple[int, int]] = {}
     stride = 1
     for rule in rules.values():

@@ -8,8 +8,8 @@ import tarfile
 from pathlib import Path
 
 from .campaign import Campaign
-from .engine import write_whole
 from .exports import Image, images
+from .whole_files import write_whole
 
 SHARD_BYTES = 256 << 20
 
@@ -48,7 +48,7 @@ def _add(tar: tarfile.TarFile, folder: Path, image: Image) -> int:
     for file in sorted((folder / image.file).parent.iterdir()):
         # The image's own files: NAME.ending and NAME_part.ending, but not those of an image whose name begins alike.
         stem, _, ending = file.name.partition(".")
-        if stem == name or stem in {f"{name}_{part}" for part in ("error", "quality", "truth", "tag", "material")}:
+        if stem == name or stem in {f"{name}_{part}" for part in ("error", "quality", "truth", "tag", "material", "depth", "flow", "panoptic")}:
             part = stem[len(name):].lstrip("_")
             parts.append((f"{image.key}.{part + '.' if part else ''}{ending}", file.read_bytes()))
     for path, content in sorted(parts):
