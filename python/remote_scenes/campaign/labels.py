@@ -119,21 +119,24 @@ def _mean(values: npt.NDArray[Any]) -> float | None:
 
 def _geometry(one: Placed, item: TracedScene, mask: npt.NDArray[np.bool_], sight: Sight | None) -> dict[str, Any]:
     """Where the sensor's geometry is not known the oriented box is the smallest around the mask."""
-    by_mask = {"obb": smallest(corners_of(mask)), "obb_of": "mask"}
     if sight is None:
-        return by_mask
+        return _by_mask(mask)
     pose = pose_of(one, sight.camera.time_s)
     corners = box_corners(item.bounds, pose)
     seen = silhouette(sight.camera, item, pose, corners, sight.things.tags.index(one.tag), sight.things, sight.backdrop, sight.rays)
     if seen is None:
-        return by_mask
+        return _by_mask(mask)
     at, distance = sight.camera.project(corners)
     geometry: dict[str, Any] = {"box_3d_px": at, "box_3d_range_m": distance, "occlusion": seen.occlusion, "truncation": seen.truncation}
     if one.keypoints:
         geometry |= keypoints(sight.camera, pose, one.keypoints, sight.things, sight.backdrop)
     if np.isfinite(seen.range_m):
         geometry["gsd_m"] = sight.camera.gsd_m(seen.range_m)
-    return {**(by_mask if not len(seen.x) else {"obb": _oriented(seen, pose, corners, sight.camera), "obb_of": "silhouette"}), **geometry}
+    return {**(_by_mask(mask) if not len(seen.x) else {"obb": _oriented(seen, pose, corners, sight.camera), "obb_of": "silhouette"}), **geometry}
+
+
+def _by_mask(mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
+    return {"obb": smallest(corners_of(mask)), "obb_of": "mask"}
 
 
 def _oriented(seen: Silhouette, pose: Pose, corners: npt.NDArray[np.float64], camera: Camera) -> npt.NDArray[np.float64]:

@@ -15,7 +15,6 @@ import xarray as xr
 
 from ..chips import _picture, _write_png
 from ..programs import run_program
-from ..results import Result
 from ..traced import TracedScene
 from .camera import Camera, camera_of, name_of
 from .campaign import Campaign, as_json
@@ -24,6 +23,7 @@ from .flow import depth, flow, middles, write_flo, write_pfm
 from .labels import Sight, degrees, label_image, rounded
 from .panoptic import write_segments
 from .placement import Bounds, Placed, place_all
+from .rendered import rendered
 from .shared import Shared, prepare_tree, with_files, write_json
 from .text import CampaignError
 from .things import backdrop_shapes, ground_scene, item_scene, placed_scene, whole_scene
@@ -121,10 +121,8 @@ class Maker:
         work = new / "work"
         drawn = self.draw(sample, work)
         messages = _render(work, [work, self.folder, self._search])
-        result = Result(work / "out")
         images = []
-        for name in result.images:
-            dataset = result[name].load()
+        for name, dataset in rendered(work / "out"):
             picture = self.campaign.picture
             try:
                 pixels = _picture(dataset, picture.bands, picture.stretch, picture.range)
@@ -247,8 +245,8 @@ def _about(name: str, dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _median(values: Any) -> float:
-    known = sorted(v for v in values.ravel().tolist() if v == v)
-    return float(known[len(known) // 2]) if known else float("nan")
+    known = values[~np.isnan(values)]
+    return float(np.partition(known, len(known) // 2)[len(known) // 2]) if len(known) else float("nan")
 
 
 def refusal(sample: int, problem: Exception) -> str:
