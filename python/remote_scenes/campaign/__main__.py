@@ -9,10 +9,10 @@ from pathlib import Path
 from ..errors import ProgramError, ProgramMissing
 from ..programs import version as program_version
 from .campaign import read_campaign
+from .drawing import Drawer
 from .forecast import check_ends, forecast
 from .launch import shard_of_rank
 from .run import preview, run
-from .sample import Maker
 from .shared import write_tree
 from .slurm import slurm_script
 from .text import CampaignError
@@ -80,7 +80,7 @@ def _run(options: argparse.Namespace) -> int:
         if options.texts >= campaign.samples:
             raise CampaignError(f"there is no sample {options.texts}", f"0 to {campaign.samples - 1}", str(campaign.path))
         folder.mkdir(parents=True, exist_ok=True)
-        Maker(campaign, folder, program_version()).draw(options.texts, folder, write_tree)
+        Drawer(campaign, folder, program_version()).draw(options.texts, folder, write_tree)
         print(f"wrote {folder / 'simulation.yaml'}")
     elif options.slurm:
         print(slurm_script(campaign, folder, options.slurm, options.workers or 1), end="")

@@ -11,6 +11,7 @@ from typing import Any, Mapping
 from ..tree import FileName
 from .draws import hashed
 from .objects import Group, keypoints_of, read_objects
+from .pairs import Pair, read_pair
 from .places import NoSuchPlace, put
 from .sequence import Frames, read_frames
 from .settings import Labels, Picture, read_formats, read_keep, read_labels, read_picture
@@ -18,7 +19,7 @@ from .text import CampaignError, Node, read_text
 from .variables import Draw, Variables, read_variables
 
 KEYS = ("campaign", "name", "description", "license", "seed", "samples", "scene", "simulation", "vary", "objects", "picture", "labels", "formats",
-        "keep", "sequence")
+        "keep", "sequence", "pair")
 MOST_SAMPLES = 10_000_000
 
 
@@ -47,6 +48,7 @@ class Campaign:
     keypoints: dict[str, list[str]]
     """Names, of the classes that have some."""
     frames: Frames
+    pair: Pair | None
 
     @property
     def classes(self) -> list[str]:
@@ -66,15 +68,22 @@ class Campaign:
         """Whether samples have scenes in common: nothing that the scene's text gets is continuous."""
         return not any(name.startswith("scene.") and self.variables.continuous(name) for name in self.variables.rules)
 
-    def draw(self, sample: int, forced: Mapping[str, Any] | None = None) -> Draw:
-        """All variables of a sample; forced: values in place of some draws."""
-        values = self.variables.values(self.seed, sample, self.samples, forced)
-        return Draw(self.variables, self.seed, sample, self.samples, values)
+    @property
+    def shapes_return(self) -> bool:
+        """Whether samples have the shapes of their scenes in common: only materials vary continuously, and none that has holes by a map."""
+        varied = [name for name in self.variables.rules if name.startswith("scene.") and self.variables.continuous(name)]
+        plain = {name for name, m in self.scene.get("materials", {}).items() if not (isinstance(m, dict) and ("map" in m or "maps" in m))}
+        return all(name.startswith("scene.materials.") and name.split(".")[2] in plain for name in varied)
+
+    def draw(self, sample: int, forced: Mapping[str, Any] | None = None, again: frozenset[str] | None = None) -> Draw:
+        """All variables of a sample; forced: values in place of some draws; again: those that the second picture of a pair draws anew."""
+        values = self.variables.values(self.seed, sample, self.samples, forced, again)
+        return Draw(self.variables, self.seed, sample, self.samples, values, again)
 
     def texts(self, draw: Draw) -> tuple[dict[str, Any], dict[str, Any]]:
         """The scene's and the simulation's text of a sample, as trees, without objects. CampaignError: a place is not there."""
         trees = {"scene": copy.deepcopy(self.scene), "simulation": copy.deepcopy(self.simulation)}
-        trees["simulation"]["seed"] = hashed(self.seed, draw.sample, "render") % (1 << 31)
+        trees["simulation"]["seed"] = hashed(self.seed, draw.sample, "render again" if draw.later else "render") % (1 << 31)
         for name, rule in self.variables.rules.items():
             text, dot, place = name.partition(".")
             if dot and text in trees:
@@ -102,12 +111,13 @@ def read_campaign(path: FileName) -> Campaign:
     if groups and "scenes" in simulation:
         raise keys["objects"].error("a simulation with `scenes` takes no objects", "a simulation with `scene`, whatever it says there")
     digest = hashlib.sha256(b"\0".join(p.read_bytes() for p in (path, scene_path, simulation_path))).hexdigest()
+    frames = read_frames(keys.get("sequence"), simulation)
     campaign = Campaign(
         path, keys["name"].text() if "name" in keys else path.stem, keys["description"].text() if "description" in keys else "",
         keys["license"].text() if "license" in keys else "", keys["seed"].integer(0, (1 << 53) - 1) if "seed" in keys else 1,
         keys["samples"].integer(1, MOST_SAMPLES), scene, simulation, scene_path, simulation_path, variables, groups,
         read_picture(keys.get("picture")), read_labels(keys.get("labels")), read_formats(keys.get("formats")), read_keep(keys.get("keep")), digest,
-        keypoints_of(groups), read_frames(keys.get("sequence"), simulation))
+        keypoints_of(groups), frames, read_pair(keys.get("pair"), variables, groups, frames.count))
     campaign.texts(campaign.draw(0))
     return campaign
 

@@ -7,6 +7,10 @@ from pathlib import Path
 from typing import Any, Iterable, Iterator
 
 
+PARTS = ("error", "quality", "truth", "tag", "material", "depth", "flow", "panoptic", "change")
+"""What files beside an image add to its name."""
+
+
 @dataclass(frozen=True)
 class Image:
     """An image of a sample. key: its name in the dataset, as 000012_chip; file: its picture, from the dataset's folder."""
@@ -27,6 +31,17 @@ class Image:
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
         return int(self.about["width"]), int(self.about["height"])
+
+
+def own_files(folder: Path, image: Image) -> list[tuple[str, Path]]:
+    """The files of an image in its sample, by name, each with what it adds to the image's name: empty, or error, quality, panoptic ..."""
+    name, found = str(image.about["name"]), []
+    for file in sorted((folder / image.file).parent.iterdir()):
+        stem = file.name.partition(".")[0]
+        part = stem[len(name):].lstrip("_") if stem.startswith(name) else "-"
+        if stem == name or (stem == f"{name}_{part}" and part in PARTS):
+            found.append((part, file))
+    return found
 
 
 def joined(entries: Iterable[dict[str, Any]]) -> Iterator[str]:

@@ -12,6 +12,7 @@ from typing import Any, Sequence
 from ..errors import InputError, ProgramError
 from ..programs import run_program
 from .campaign import Campaign
+from .drawing import Drawer
 from .exports import images
 from .sample import Maker, refusal
 from .shared import UNUSED, with_files, write_json
@@ -60,7 +61,7 @@ def check_ends(campaign: Campaign, version: str) -> None:
         folder = Path(name)
         _check_template(campaign)
         try:
-            drawn = Maker(campaign, folder, version).draw(0, folder)
+            drawn = Drawer(campaign, folder, version).draw(0, folder)
         except ProgramError as problem:
             raise Refused(refusal(0, problem)) from None
         if said := _refused("dirsig-render", folder, campaign, "simulation.yaml"):

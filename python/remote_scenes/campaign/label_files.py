@@ -37,7 +37,7 @@ def write_coco(campaign: Campaign, folder: Path) -> None:
         for picture, image in enumerate(images(folder), 1):
             for label in image.labels:
                 number += 1
-                track = {"video_id": image.sample + 1, "track_id": label["object"]} if "frame" in image.about else {}
+                track = {"video_id": image.sample + 1, "track_id": label["object"]} if {"frame", "moment"} & set(image.about) else {}
                 yield {"id": number, "image_id": picture, "iscrowd": 0, **track, **label}
 
     parts = (json.dumps(head)[:-1], ', "images": [')
@@ -45,8 +45,9 @@ def write_coco(campaign: Campaign, folder: Path) -> None:
 
 
 def _of_video(image: Image) -> dict[str, int]:
-    """A sample is a video; its objects keep their numbers."""
-    return {"video_id": image.sample + 1, "frame_index": image.about["frame"]} if "frame" in image.about else {}
+    """A sequence is a video, and a pair one of two frames; objects keep their numbers."""
+    number = image.about.get("frame", image.about.get("moment"))
+    return {} if number is None else {"video_id": image.sample + 1, "frame_index": number}
 
 
 def write_dota(campaign: Campaign, folder: Path) -> None:

@@ -42,11 +42,11 @@ def label_image(dataset: xr.Dataset, placed: Sequence[Placed], items: dict[str, 
     names = dataset["tag"].attrs["class_names"]
     tag = dataset["tag"].values
     out = []
-    for number, one in enumerate(placed, 1):
+    for one in placed:
         mask = tag == names.index(one.tag) if one.tag in names else np.zeros(tag.shape, bool)
         if int(mask.sum()) < min_pixels:
             continue
-        label = {"object": number, "class": one.class_name, "category_id": classes.index(one.class_name) + 1, **_of_mask(mask, segmentation),
+        label = {"object": one.number, "class": one.class_name, "category_id": classes.index(one.class_name) + 1, **_of_mask(mask, segmentation),
                  **_pose(one, items[one.place], frame, sight.camera.time_s if sight else 0.0), **_measured(dataset, mask)}
         label |= _geometry(one, items[one.place], mask, sight)
         out.append(rounded(label))

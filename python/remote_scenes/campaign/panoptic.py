@@ -37,9 +37,9 @@ def write_segments(dataset: xr.Dataset, placed: Sequence[Placed], classes: Seque
             segments.append({"id": identity, "category_id": category, "area": int(mask.sum()), "bbox": box, "iscrowd": 0})
 
     tag, tags = dataset["tag"].values, dataset["tag"].attrs["class_names"]
-    for i, one in enumerate(placed, 1):
+    for one in placed:
         if one.tag in tags:
-            add(tag == tags.index(one.tag), i, classes.index(one.class_name) + 1)
+            add(tag == tags.index(one.tag), one.number, classes.index(one.class_name) + 1)
     names, material = stuff_classes(stuff), dataset["material"].values
     free = number == 0
     for i, name in enumerate(names):

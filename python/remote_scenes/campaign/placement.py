@@ -14,6 +14,7 @@ from .text import CampaignError, Node
 from .variables import Draw
 
 Bounds = tuple[tuple[float, float, float], tuple[float, float, float]]
+Ground = Callable[["str | None", float, float], "float | None"]
 MOST_OBJECTS = 100_000
 
 
@@ -35,6 +36,11 @@ class Placed:
     """Along the heading; position_m is that of second 0."""
     keypoints: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     """In the object's frame, m."""
+
+    @property
+    def number(self) -> int:
+        """Of the object in its sample, from 1; both pictures of a pair have the same."""
+        return int(self.tag.rpartition(".")[2])
 
     def at(self, time_s: float) -> tuple[float, float, float]:
         """Where it is at a time."""
@@ -83,7 +89,7 @@ def apart(a: Sequence[Point], b: Sequence[Point], gap_m: float) -> bool:
     return False
 
 
-class _Taken:
+class Taken:
     """Footprints that are there, with circles around them, so that only neighbours are compared in full."""
 
     def __init__(self) -> None:
@@ -97,6 +103,10 @@ class _Taken:
                 return False
         return True
 
+    def add_placed(self, one: Placed, bounds: Bounds) -> None:
+        """Takes the place of an object that is there."""
+        self.add(footprint(bounds, one.position_m[0], one.position_m[1], one.heading_deg, one.scale))
+
     def add(self, corners: list[Point]) -> None:
         """Takes the place."""
         radius, middle = _circle(corners)
@@ -108,30 +118,33 @@ def _circle(corners: Sequence[Point]) -> tuple[float, Point]:
     return max(math.hypot(px - x, py - y) for px, py in corners), (x, y)
 
 
-def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bounds],
-              ground: Callable[[str | None, float, float], float | None]) -> list[Placed]:
+def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bounds], ground: Ground) -> list[Placed]:
     """The objects of a sample. bounds: of an object or group of the scene in its own frame, m; ground: height of what is below a place, m, of
     all or of the placements of one name, or None. CampaignError with the place in the text where an object finds no room."""
-    taken, out = _Taken(), list[Placed]()
+    taken, out = Taken(), list[Placed]()
     for group in groups:
         slots = count()  # the next one that is free
         for number in range(_count(group, draw)):
-            context = ObjectDraw(draw, group.name, number)
-            item = _item(group, context)
-            scale = _number(item.scale, context) if item.scale else 1.0
-            if not 1e-6 <= scale <= 1e6:
-                raise item.node.error(f"sample {draw.sample}: the scale {scale:g} is out of range", "1e-06 to 1e+06")
-            materials = {key: _material(rule, context) for key, rule in item.materials.items()}
-            box = bounds(item.place)
-            x, y, heading = _find(group, number, context, draw, box, scale, taken, slots)
-            z = _number(group.height, context) if group.height else ground(group.on, x, y)
-            if z is None:
-                raise group.node.error(f"sample {draw.sample}: nothing is below object {number} of '{group.name}' at ({x:.2f}, {y:.2f})",
-                                       "ground there, or a `height_m`")
-            tag = f"{item.class_name}.{len(out) + 1}"
-            out.append(Placed(tag, group.name, item.name, item.class_name, item.place, (x, y, z), heading, scale, materials,
-                              _number(group.speed, context) if group.speed else 0.0, item.keypoints))
+            out.append(place_one(group, number, draw, bounds, ground, taken, slots, len(out) + 1))
     return out
+
+
+def place_one(group: Group, number: int, draw: Draw, bounds: Callable[[str], Bounds], ground: Ground, taken: Taken, slots: Iterator[int],
+              whole_number: int) -> Placed:
+    """One object, which takes its place. number: of the object in its group, which its draws depend on; whole_number: of the object in the sample, from 1."""
+    context = ObjectDraw(draw, group.name, number)
+    item = _item(group, context)
+    scale = _number(item.scale, context) if item.scale else 1.0
+    if not 1e-6 <= scale <= 1e6:
+        raise item.node.error(f"sample {draw.sample}: the scale {scale:g} is out of range", "1e-06 to 1e+06")
+    materials = {key: _material(rule, context) for key, rule in item.materials.items()}
+    x, y, heading = _find(group, number, context, draw, bounds(item.place), scale, taken, slots)
+    z = _number(group.height, context) if group.height else ground(group.on, x, y)
+    if z is None:
+        raise group.node.error(f"sample {draw.sample}: nothing is below object {number} of '{group.name}' at ({x:.2f}, {y:.2f})",
+                               "ground there, or a `height_m`")
+    return Placed(f"{item.class_name}.{whole_number}", group.name, item.name, item.class_name, item.place, (x, y, z), heading, scale, materials,
+                  _number(group.speed, context) if group.speed else 0.0, item.keypoints)
 
 
 def _count(group: Group, draw: Draw) -> int:
@@ -168,7 +181,7 @@ def _number(rule: Any, context: ObjectDraw) -> float:
     return float(value)
 
 
-def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bounds, scale: float, taken: _Taken,
+def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bounds, scale: float, taken: Taken,
           slots: Iterator[int]) -> tuple[float, float, float]:
     """A place with room; of slots the next one that has it."""
     turned = _number(group.heading, context) if group.heading else 0.0
@@ -190,4 +203,4 @@ def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bound
     raise group.node.error(f"sample {draw.sample}: object {number} of '{group.name}': no place has room in {tried} attempts", "fewer objects, less `spacing_m`, or more room")
 
 
-__all__ = ["Bounds", "CampaignError", "Placed", "apart", "footprint", "place_all"]
+__all__ = ["Bounds", "CampaignError", "Ground", "Placed", "Taken", "apart", "footprint", "place_all", "place_one"]

@@ -6,9 +6,9 @@ import os
 import shutil
 import socket
 import warnings
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any, Sequence
 
 import numpy as np
 import xarray as xr
@@ -18,38 +18,17 @@ from ..programs import run_program
 from ..traced import TracedScene
 from .camera import Camera, camera_of, name_of
 from .campaign import Campaign, as_json
+from .drawing import Drawer, Drawn
 from .earth import Frame
 from .flow import depth, flow, middles, write_flo, write_pfm
 from .labels import Sight, degrees, label_image, rounded
+from .pairs import LATER, changes, write_change
 from .panoptic import write_segments
-from .placement import Bounds, Placed, place_all
 from .rendered import rendered
-from .shared import Shared, prepare_tree, with_files, write_json
 from .text import CampaignError
-from .things import backdrop_shapes, ground_scene, item_scene, placed_scene, whole_scene
-from .variables import Draw
 
-_TRUTH = ("tag", "tag_fraction", "instance", "range")
-_OF_SUN = ("incidence", "sun_visibility")
 _KEPT = {"image": ("",), "error": ("_error",), "quality": ("_quality",), "truth": ("_truth",), "classes": ("_tag", "_material"),
          "depth": (), "flow": ()}
-HIGHEST_M = 1e5
-"""Where rays begin that look for what is below an object."""
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """A sample before it is rendered: its draws and texts, the prepared scenes, and its objects."""
-
-    draw: Draw
-    scene: dict[str, Any]
-    simulation: dict[str, Any]
-    backdrop: Path
-    things: Path | None
-    """Of the objects alone, or with the scene around them."""
-    placed: list[Placed]
-    items: Callable[[str], TracedScene]
-    """What is placed, by the names that are placed, alone where it is defined."""
 
 
 class Maker:
@@ -58,9 +37,7 @@ class Maker:
     def __init__(self, campaign: Campaign, folder: Path, version: str) -> None:
         """version: of the programs."""
         self.campaign, self.folder, self.version = campaign, folder, version
-        self._search = campaign.scene_path.parent.resolve()
-        self._scenes_return = campaign.scenes_return
-        self.shared = Shared(folder / "shared", self._search, version)
+        self.drawer = Drawer(campaign, folder, version)
 
     def path(self, sample: int) -> Path:
         """The folder of a sample; it is there when the sample is finished."""
@@ -86,73 +63,62 @@ class Maker:
             shutil.rmtree(new, ignore_errors=True)
         return target
 
-    def draw(self, sample: int, folder: Path, write: Callable[[Any, Path], None] = write_json) -> Drawn:
-        """Draws a sample, prepares its scenes, and writes simulation.yaml (and what is prepared for it alone) into a folder, ready to be rendered. write:
-        how the text is written."""
-        campaign = self.campaign
-        draw = campaign.draw(sample)
-        scene, simulation = campaign.texts(draw)
-        # A scene that returns is prepared once, and the sample's objects beside it; one that does not is prepared with them, and only its shape once.
-        backdrop = self.shared.prepare(scene if self._scenes_return or not campaign.groups else backdrop_shapes(scene))
-        items, placed = self._items(scene), list[Placed]()
-        if campaign.groups:
-            placed = place_all(campaign.groups, draw, lambda place: self._bounds(items, place), lambda on, x, y: _ground(
-                self.shared.open(self.shared.prepare(ground_scene(scene, on)) if on else backdrop), x, y))
-        things = None
-        if placed or not self._scenes_return:
-            things = folder / "things.h5"
-            prepare_tree((placed_scene if self._scenes_return else whole_scene)(scene, placed), things, self._search)
-        simulation = with_files(simulation, campaign.simulation_path.parent)
-        if campaign.groups:
-            more = ("material",) if "panoptic" in campaign.formats else ()
-            for sensor in simulation["sensors"]:
-                if sensor.get("kind") not in ("point", "goniometer", "rami"):
-                    wanted = [*(sensor.get("truth") or []), *_TRUTH, *(_OF_SUN if simulation.get("sun") else ()), *more]
-                    sensor["truth"] = list(dict.fromkeys(wanted))
-        simulation["sensors"] = campaign.frames.expanded(simulation["sensors"])
-        if "scenes" not in simulation:
-            simulation.pop("scene", None)
-            rendered = (backdrop, things) if self._scenes_return else (things,)
-            simulation = {"scenes": [os.path.abspath(p) for p in rendered if p], **simulation}
-        write(simulation, folder / "simulation.yaml")
-        return Drawn(draw, scene, simulation, backdrop, things, placed, items)
-
     def _make(self, sample: int, new: Path) -> None:
         work = new / "work"
-        drawn = self.draw(sample, work)
-        messages = _render(work, [work, self.folder, self._search])
-        images = []
+        drawn = self.drawer.draw(sample, work)
+        images, messages, datasets = self._pictures(drawn, work, new, "")
+        record = {"campaign": self.campaign.digest, "version": self.version, "seed": self.campaign.seed, "sample": sample,
+                  "values": drawn.draw.known, "objects": [asdict(p) for p in drawn.placed]}
+        if self.campaign.pair:
+            (work / "later").mkdir()
+            later = self.drawer.draw_later(drawn, work / "later")
+            more, said, others = self._pictures(later, work / "later", new, LATER)
+            change = changes(drawn.placed, later.placed)
+            for image in [*images, *more]:
+                image["labels"] = [{**label, "change": change[f"{label['class']}.{label['object']}"]} for label in image["labels"]]
+            for name in datasets:
+                if "tag" in datasets[name] and "tag" in others[name]:
+                    write_change(datasets[name], others[name], change, new / f"{name}_change.png")
+            images, messages = [*images, *more], sorted({*messages, *said})
+            record |= {"values_later": later.draw.known, "objects_later": [asdict(p) for p in later.placed]}
+        (new / "sample.json").write_text(as_json({**record, "images": images, "messages": messages}), encoding="utf-8")
+
+    def _pictures(self, drawn: Drawn, work: Path, new: Path, ending: str) -> tuple[list[dict[str, Any]], list[str], dict[str, xr.Dataset]]:
+        """Renders, and puts what is kept of it into `new`; returns the images' records, the messages, and the images. ending: of the images' names."""
+        messages = _render(work, [work, self.folder, self.drawer.search])
+        images, datasets = [], {}
         for name, dataset in rendered(work / "out"):
-            picture = self.campaign.picture
+            picture, own = self.campaign.picture, name + ending
             try:
                 pixels = _picture(dataset, picture.bands, picture.stretch, picture.range)
             except ValueError as wrong:
                 raise CampaignError(f"picture of '{name}': {wrong}", file=str(self.campaign.path)) from None
-            _write_png(new / f"{name}.png", pixels)
-            images.append({**rounded(_about(name, dataset)), **self._seen(name, dataset, drawn, new)})
+            _write_png(new / f"{own}.png", pixels)
+            pair = {"moment": int(bool(ending))} if self.campaign.pair else {}
+            images.append({**rounded(_about(own, dataset)), **pair, **self._seen(name, own, dataset, drawn, new)})
+            datasets[name] = dataset
             endings = [e for part in self.campaign.keep for e in _KEPT[part]]
-            for file in (f"{name}{e}{kind}" for e in endings for kind in (".img", ".img.hdr", ".tif")):
-                if (work / "out" / file).exists():
-                    os.replace(work / "out" / file, new / file)
-        record = {"campaign": self.campaign.digest, "version": self.version, "seed": self.campaign.seed, "sample": sample,
-                  "values": drawn.draw.known, "objects": [asdict(p) for p in drawn.placed], "images": images, "messages": messages}
-        (new / "sample.json").write_text(as_json(record), encoding="utf-8")
+            for e, kind in ((e, kind) for e in endings for kind in (".img", ".img.hdr", ".tif")):
+                if (work / "out" / f"{name}{e}{kind}").exists():
+                    os.replace(work / "out" / f"{name}{e}{kind}", new / f"{own}{e}{kind}")
+        return images, messages, datasets
 
-    def _seen(self, name: str, dataset: xr.Dataset, drawn: Drawn, new: Path) -> dict[str, Any]:
-        """What an image shows: its labels, and where its corners are on the Earth. Writes what is made by rays or of the truth into `new`."""
+    def _seen(self, name: str, own: str, dataset: xr.Dataset, drawn: Drawn, new: Path) -> dict[str, Any]:
+        """What an image shows: its labels, and where its corners are on the Earth. Writes what is made by rays or of the truth into `new`, named by
+        `own`."""
         camera, frame, settings = _camera(name, drawn), _frame(drawn.scene), self.campaign.labels
         time = camera.time_s if camera else 0.0
         with contextlib.ExitStack() as stack:
-            backdrop = self.shared.open(drawn.backdrop, time)
+            backdrop = stack.enter_context(self.drawer.opened(drawn.backdrop, time))
             things = stack.enter_context(TracedScene(drawn.things, time)) if drawn.things else None
             seen: dict[str, Any] = {"corners_lon_lat": _corners(camera, backdrop, frame)} if camera and frame else {}
             if (number := self.campaign.frames.frame_of(name)) is not None:
                 seen["frame"] = number
             if camera:
                 seen |= {"camera": rounded(camera.record())} if camera.record() else {}
-                self._by_rays(name, camera, drawn, things, backdrop, new)
+                self._by_rays(name, own, camera, drawn, things, backdrop, new)
             if "panoptic" in self.campaign.formats and "material" in dataset and "tag" in dataset:
-                seen["segments"] = write_segments(dataset, drawn.placed, self.campaign.classes, self.campaign.stuff, new / f"{name}_panoptic.png")
+                seen["segments"] = write_segments(dataset, drawn.placed, self.campaign.classes, self.campaign.stuff, new / f"{own}_panoptic.png")
             if not things or "tag" not in dataset:
                 return {**seen, "labels": []}
             items = {p.place: drawn.items(p.place) for p in drawn.placed}
@@ -160,33 +126,15 @@ class Maker:
             labels = label_image(dataset, drawn.placed, items, self.campaign.classes, sight, frame, settings.min_pixels, settings.segmentation)
         return {**seen, "labels": labels}
 
-    def _by_rays(self, name: str, camera: Camera, drawn: Drawn, things: TracedScene | None, backdrop: TracedScene, new: Path) -> None:
+    def _by_rays(self, name: str, own: str, camera: Camera, drawn: Drawn, things: TracedScene | None, backdrop: TracedScene, new: Path) -> None:
         """Depth, and the flow to the next frame, where they are to be kept."""
         later = _camera(self.campaign.frames.next_of(name) or "", drawn) if "flow" in self.campaign.keep else None
         if later or "depth" in self.campaign.keep:
             places, tag, distance = middles(camera, things, backdrop)
             if "depth" in self.campaign.keep:
-                write_pfm(new / f"{name}_depth.pfm", depth(camera, places, distance))
+                write_pfm(new / f"{own}_depth.pfm", depth(camera, places, distance))
             if later:
-                write_flo(new / f"{name}_flow.flo", flow(camera, later, places, tag, things.tags if things else (), drawn.placed))
-
-    def _items(self, scene: dict[str, Any]) -> Callable[[str], TracedScene]:
-        """Opens what is placed; each of the names is looked for once a sample."""
-        known: dict[str, Path] = {}
-
-        def item(place: str) -> TracedScene:
-            if place not in known:
-                known[place] = self.shared.prepare(item_scene(scene, place))
-            return self.shared.open(known[place])
-
-        return item
-
-    def _bounds(self, items: Callable[[str], TracedScene], place: str) -> Bounds:
-        low, high = items(place).bounds.tolist()
-        if not all(abs(v) < 1e6 for v in (*low, *high)):
-            raise CampaignError(f"'{place}' has no end, and cannot be placed as an object", "something with bounds", str(self.campaign.path))
-        return (low[0], low[1], low[2]), (high[0], high[1], high[2])
-
+                write_flo(new / f"{own}_flow.flo", flow(camera, later, places, tag, things.tags if things else (), drawn.placed))
 
 def _camera(name: str, drawn: Drawn) -> Camera | None:
     """The geometry of the sensor whose image has this name."""
@@ -205,14 +153,6 @@ def _corners(camera: Camera, scene: TracedScene, frame: Frame) -> list[list[str]
     if not hits.hit.all():
         return None
     return [degrees(frame, place) for place in hits.position]
-
-
-def _ground(scene: TracedScene, x: float, y: float) -> float | None:
-    """The height of what is first met from above."""
-    top = float(scene.bounds[1, 2])
-    hits = scene.trace([x, y, top + 1 if abs(top) < HIGHEST_M else HIGHEST_M], [0, 0, -1])
-    # To the micrometre: what is left of the ray's length is no height.
-    return round(float(hits.position[2]), 6) + 0.0 if bool(hits.hit) else None
 
 
 def _render(work: Path, folders: Sequence[Path]) -> list[str]:

@@ -11,6 +11,7 @@ from remote_scenes.campaign import draws
 from remote_scenes.campaign.regions import Polygons, Roads, Slots
 from remote_scenes.campaign.distributions import read_rule
 from remote_scenes.campaign.objects import Group, Item
+from remote_scenes.campaign.pairs import Pair, place_later
 from remote_scenes.campaign.placement import place_all
 from remote_scenes.campaign.text import CampaignError, Node, read_text
 from remote_scenes.campaign.things import placed_scene
@@ -193,10 +194,29 @@ class Places(unittest.TestCase):
         self.assertEqual(sorted(m["reflectance"] for m in whole["materials"].values()), sorted(drawn))
         self.assertEqual([whole["materials"][whole["objects"][w["place"]]["material"]]["reflectance"] for w in whole["world"]], drawn)
 
-    def placed(self, count, places, spacing=0.0, materials={}):
+    def test_pairs_leave_and_arrive_as_often_as_is_said(self):
+        slots = tuple((9.0 * i, 0.0, 0.0) for i in range(40))
+        group = self.group(20, slots)
+        left = came = 0
+        for sample in range(100):
+            draw = Draw(Variables({}, (), {}, {}), 1, sample, 100)
+            bounds, ground = (lambda place: ((-1, -2, 0), (1, 2, 1))), (lambda on, x, y: 0.0)
+            first = place_all([group], draw, bounds, ground)
+            later = place_later([group], draw, bounds, ground, first, Pair(frozenset(), 0.3, 0.15))
+            stay = {p.tag for p in first} & {p.tag for p in later}
+            left, came = left + 20 - len(stay), came + len(later) - len(stay)
+            self.assertEqual(len({p.position_m for p in later}), len(later))
+        for count, share in ((left, 0.3), (came, 0.15)):
+            self.assertLess(chi_square([count, 2000 - count], [2000 * share, 2000 * (1 - share)]), chi_square_bound(2))
+            self.assertGreater(chi_square([count, 2000 - count], [2000 * share * 1.4, 2000 * (1 - share * 1.4)]), chi_square_bound(2))
+
+    def group(self, count, places, spacing=0.0, materials={}):
         number = lambda value: read_rule(Node(value, "c.yaml", 3, 1), "n")
         item = Item("car", "car", "car", 1, materials, None, Node({}, "c.yaml", 4, 1))
-        group = Group("g", (item,), number(count), Slots(places), None, spacing, True, number(0), None, 9, Node({}, "c.yaml", 5, 1))
+        return Group("g", (item,), number(count), Slots(places), None, spacing, True, number(0), None, 9, Node({}, "c.yaml", 5, 1))
+
+    def placed(self, count, places, spacing=0.0, materials={}):
+        group = self.group(count, places, spacing, materials)
         draw = Draw(Variables({}, (), {}, {}), 1, 0, 1)
         return place_all([group], draw, lambda place: ((-1, -2, 0), (1, 2, 1)), lambda on, x, y: 0.0)
 

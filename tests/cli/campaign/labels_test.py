@@ -179,7 +179,25 @@ class Labels(Case):
                 for i, band in enumerate(("red", "nir")):
                     self.assertAlmostEqual(label["spectrum"][band] / radiance[i][mask].mean(), 1, places=5)
                     self.assertAlmostEqual(label["spectrum_error"][band] / (np.sqrt((error[i][mask].astype(float) ** 2).sum()) / mask.sum()), 1, places=5)
-                self.assertTrue(0 <= label["in_shadow"] <= 1 and 0 <= label["incidence_deg"] <= 180)
+                self.assertTrue(0 <= label["incidence_deg"] <= 180)
+
+    def test_share_in_shadow(self):
+        """Rays from what is seen of an object to the middle of the sun: the share that meets something, itself included."""
+        zenith, azimuth = np.radians(self.record["values"]["simulation.sun.direction.zenith_deg"]), np.radians(120)
+        sun = np.array([np.sin(zenith) * np.sin(azimuth), np.sin(zenith) * np.cos(azimuth), np.cos(zenith)])
+        shares = []
+        for name, image in self.images.items():
+            seen = self.seen(name)
+            for label in image["labels"]:
+                rows, a, columns, b = np.nonzero((seen == label["object"]) & self.mask(label)[:, None, :, None])
+                origin, d = rays(name, columns + (b + 0.5) / FINE, rows + (a + 0.5) / FINE)
+                d = d / np.linalg.norm(d, axis=1, keepdims=True)
+                place = origin + d * (self.caster.first(origin, d)[1] - 1e-5)[:, None]
+                shares.append((self.caster.trace(place, np.broadcast_to(sun, place.shape)) >= 0).mean())
+                # Means over pixels hold what else their pixels show, and the four samples of each are random.
+                others, noise = 1 - len(rows) / (label["area"] * FINE ** 2), np.sqrt(max(shares[-1] * (1 - shares[-1]), 0.02) / (4 * label["area"]))
+                self.assertAlmostEqual(label["in_shadow"], shares[-1], delta=others + 4.5 * noise, msg=(name, label["object"]))
+        self.assertGreater(np.ptp(shares), 0.3)
 
     def test_keypoints(self):
         """Where each is by intersection with the sensor's plane; visible where the caster meets nothing before it."""
@@ -312,6 +330,41 @@ class Sequences(Case):
                 np.testing.assert_allclose(label["position_m"], record["objects"][label["object"] - 1]["position_m"] + frame * step[label["object"]], atol=1e-4)
             if frame == 0:
                 self.flow(path, name, image, caster, step, flight)
+
+    def test_pairs(self):
+        """The same place under another sun: who stays stands as before, and the change's picture is where the caster sees who left and who came."""
+        text = CAMPAIGN.replace("seed: 3", "seed: 8\nkeep: [image, error]\npair: {again: [simulation.sun.direction.zenith_deg], leave: 0.5, arrive: 0.5}")
+        campaign = read_campaign(self.write(text.replace("{integers: [3, 5]}", "6"), SCENE, SENSORS))
+        path = Maker(campaign, self.folder / "out", "v").make(1)
+        record = json.loads((path / "sample.json").read_text())
+        first, later = ({o["tag"]: o for o in record[key]} for key in ("objects", "objects_later"))
+        stay, left, came = set(first) & set(later), set(first) - set(later), set(later) - set(first)
+        self.assertTrue(stay and left and came)
+        self.assertTrue(all(first[t] == later[t] for t in stay))
+        self.assertEqual(sorted(int(t.split(".")[1]) for t in came), list(range(7, 7 + len(came))))
+        varied = [key for key in record["values"] if record["values"][key] != record["values_later"][key]]
+        self.assertEqual(varied, ["simulation.sun.direction.zenith_deg"])
+        self.assertEqual([(i["name"], i["moment"]) for i in record["images"]], [("chip", 0), ("drone", 0), ("chip_later", 1), ("drone_later", 1)])
+        for image in record["images"]:
+            for label in image["labels"]:
+                tag = f"{label['class']}.{label['object']}"
+                self.assertEqual(label["change"], "stays" if tag in stay else "leaves" if tag in left else "arrives")
+                self.assertIn(tag, later if image["moment"] else first)
+        for name in ("chip", "drone"):
+            change = read_png(path / f"{name}_change.png")[..., 0]
+            owners = []
+            for objects, changed in ((first, left), (later, came)):
+                caster = Boxes()
+                caster.add(-2, *ROOF)
+                caster.add(-2, (-30, -30, -1), (30, 30, 0))
+                for tag, one in objects.items():
+                    for low, high in PARTS[one["item"]]:
+                        caster.add(int(tag in changed), low, high, one["position_m"], one["heading_deg"], one["scale"])
+                x, y = np.meshgrid((np.arange(change.shape[1] * 4) + 0.5) / 4, (np.arange(change.shape[0] * 4) + 0.5) / 4)
+                owners.append((caster.trace(*rays(name, x.ravel(), y.ravel())) == 1).reshape(change.shape[0], 4, change.shape[1], 4).mean(axis=(1, 3)))
+            for bit, share in zip((1, 2), owners):
+                self.assertTrue((change[share == 1] & bit).all() and not (change[share == 0] & bit).any())
+                self.assertGreater((share == 1).sum(), 5)
 
     def flow(self, path, name, image, caster, step, flight):
         data = (path / f"{name}_0000_flow.flo").read_bytes()
