@@ -12,6 +12,7 @@ from ..errors import ProgramError
 from ..programs import version as program_version
 from ..tree import FileName
 from .campaign import Campaign, read_campaign
+from .cog import check_cog, write_cog
 from .croissant import write_croissant
 from .engine import Tally, Tell, of_shard, prepare_folder, run_samples
 from .exports import finished, images
@@ -19,15 +20,18 @@ from .forecast import check_ends
 from .kitti import write_kitti
 from .label_files import write_coco, write_dota, write_geojson, write_yolo, write_yolo_obb
 from .panoptic import write_panoptic
+from .settings import FORMATS
 from .sheet import write_sheet
 from .stac import write_stac
 from .text import CampaignError
 from .webdataset import write_webdataset
+from .zarr_store import write_zarr
 
 PREVIEWED = 12
 _WRITERS: dict[str, Callable[[Campaign, Path], None]] = {
     "coco": write_coco, "panoptic": write_panoptic, "dota": write_dota, "yolo": write_yolo, "yolo_obb": write_yolo_obb, "kitti": write_kitti, "geojson": write_geojson,
-    "webdataset": write_webdataset, "stac": write_stac}
+    "webdataset": write_webdataset, "zarr": write_zarr, "cog": write_cog,
+    "stac": write_stac}
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,8 @@ def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None 
     folder = Path(folder)
     if not 1 <= shard[0] <= shard[1]:
         raise ValueError(f"shard {shard[0]}/{shard[1]}: the first is 1/{shard[1]}, the last {shard[1]}/{shard[1]}")
+    if "cog" in campaign.formats:
+        check_cog(campaign)
     version = prepare_folder(campaign, folder)
     speak = tell or (lambda _: None)
     if not finished(folder):
@@ -64,8 +70,8 @@ def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None 
 
 
 def _write_lists(campaign: Campaign, folder: Path, version: str) -> None:
-    for name in campaign.formats:
-        if name in _WRITERS:
+    for name in FORMATS:  # cards after what they name
+        if name in campaign.formats and name in _WRITERS:
             _WRITERS[name](campaign, folder)
     if "croissant" in campaign.formats:
         write_croissant(campaign, folder, version)

@@ -6,7 +6,7 @@ from typing import Literal
 
 from .text import Node
 
-FORMATS = ("coco", "panoptic", "dota", "yolo", "yolo_obb", "kitti", "geojson", "webdataset", "stac", "croissant")
+FORMATS = ("coco", "panoptic", "dota", "yolo", "yolo_obb", "kitti", "geojson", "webdataset", "zarr", "cog", "stac", "croissant")
 KEPT = ("image", "error", "quality", "truth", "classes", "depth", "flow")
 """The radiance, its standard error, flags, all truth, classes by tag and material, and by rays the depth and the flow to the next frame."""
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .campaign import Campaign
+from .cog import TYPE
 from .exports import Image, images, own_files
 from .whole_files import write_whole
 
@@ -60,4 +61,6 @@ def _item(image: Image, folder: Path, collection: str) -> dict[str, Any]:
     for file in sorted([*(file for _, file in own_files(folder, image)), (folder / image.file).with_name("sample.json")]):
         kind, role = _TYPES.get(file.suffix, ("application/octet-stream", "data"))
         item["assets"][file.name] = {"href": f"../../samples/{image.sample:06d}/{file.name}", "type": kind, "roles": [role]}
+    if (folder / "cog" / f"{image.key}.tif").exists():
+        item["assets"]["cog"] = {"href": f"../../cog/{image.key}.tif", "type": TYPE, "roles": ["data", "cloud-optimized"]}
     return item
