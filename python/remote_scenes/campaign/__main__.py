@@ -11,7 +11,7 @@ from ..programs import version as program_version
 from .campaign import read_campaign
 from .drawing import Drawer
 from .forecast import check_ends, forecast
-from .launch import shard_of_rank
+from .launch import leave_launcher, shard_of_rank
 from .run import preview, run
 from .shared import write_tree
 from .slurm import slurm_script
@@ -42,7 +42,9 @@ def _count(text: str) -> int:
 def _shard(text: str) -> tuple[int, int]:
     if text == "rank":
         try:
-            return shard_of_rank()
+            shard = shard_of_rank()
+            leave_launcher()
+            return shard
         except CampaignError as missing:
             raise argparse.ArgumentTypeError(missing.message + "; " + missing.hint) from None
     match = re.fullmatch(r"(\d{1,7})/(\d{1,7})", text)

@@ -76,7 +76,7 @@ class Campaign:
         return all(name.startswith("scene.materials.") and name.split(".")[2] in plain for name in varied)
 
     def draw(self, sample: int, forced: Mapping[str, Any] | None = None, again: frozenset[str] | None = None) -> Draw:
-        """All variables of a sample; forced: values in place of some draws; again: those that the second picture of a pair draws anew."""
+        """All variables of a sample; forced: values in place of some draws; again: those that the second picture of a pair draws again."""
         values = self.variables.values(self.seed, sample, self.samples, forced, again)
         return Draw(self.variables, self.seed, sample, self.samples, values, again)
 

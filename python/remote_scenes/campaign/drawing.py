@@ -111,7 +111,7 @@ class Drawer:
                 yield scene
 
     def _items(self, scene: dict[str, Any]) -> Callable[[str], TracedScene]:
-        """Opens what is placed; each of the names is looked for once a sample."""
+        """Opens what is placed; each name is looked for one time a sample."""
         known: dict[str, Path] = {}
 
         def item(place: str) -> TracedScene:

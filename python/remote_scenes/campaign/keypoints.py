@@ -20,7 +20,7 @@ def keypoints(camera: Camera, pose: Pose, points: Mapping[str, Numbers | tuple[f
     places = pose.to_scene(np.array(list(points.values()), float))
     at, distance = camera.project(places)
     with np.errstate(invalid="ignore"):
-        inside = ((at >= 0) & (at < [camera.columns, camera.rows])).all(axis=1)
+        inside = np.asarray(((at >= 0) & (at < [camera.columns, camera.rows])).all(axis=1))
     mark = np.where(inside, HIDDEN, ABSENT)
     if inside.any():
         origin, direction = camera.rays(at[inside, 0], at[inside, 1])

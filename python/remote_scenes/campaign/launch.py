@@ -13,7 +13,7 @@ from .sample import Maker
 from .text import CampaignError, Refused
 
 RANKS = (("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), ("PMI_RANK", "PMI_SIZE"), ("SLURM_PROCID", "SLURM_NTASKS"))
-"""Rank from 0 and number of ranks, as Open MPI, MPICH (and what follows its process manager) and Slurm's srun tell them."""
+"""Rank from 0 and number of ranks, as Open MPI, MPICH (and what follows its process manager) and Slurm's srun state them."""
 WAITING = 256
 """Samples that are given to an executor at a time."""
 
@@ -30,6 +30,12 @@ def shard_of_rank(environment: Mapping[str, str] = os.environ) -> tuple[int, int
                 raise CampaignError(f"{rank} is '{environment[rank]}' of {size} '{environment[size]}'", "a rank from 0, below their number")
             return i + 1, n
     raise CampaignError("no launcher says which rank this is", "mpirun, mpiexec or srun before the command, or --shard I/N")
+
+
+def leave_launcher() -> None:
+    """Takes a launcher's variables out of the environment: the programs that this process starts are no ranks, and each would wait for the others."""
+    for name in [n for n in os.environ if n.startswith(("OMPI_", "PMIX_", "PMI_", "PRTE_"))]:
+        del os.environ[name]
 
 
 def run_by(executor: Executor, campaign: Campaign, folder: Path, numbers: Iterable[int], version: str,

@@ -25,7 +25,7 @@ LEFT, CAME = 1, 2
 
 @dataclass(frozen=True)
 class Pair:
-    """again: variables that the second picture draws anew; leave: with which probability an object leaves, arrive: how many come, as a share of those
+    """again: variables that the second picture draws again; leave: with which probability an object leaves, arrive: how many come, as a share of those
     that were there."""
 
     again: frozenset[str]

@@ -16,14 +16,17 @@ from .sample import Maker
 def main(arguments: list[str]) -> int:
     """0 when the input ended."""
     campaign, folder, version = arguments
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    answers = os.dup(1)
     os.dup2(2, 1)  # whatever is printed is no answer
     # Ctrl-C is for who started it; a SIGTERM ends the program that runs, and takes away what is unfinished.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     maker = Maker(read_campaign(campaign), Path(folder), version)
     for line in sys.stdin:
-        print(json.dumps(answer_of(maker, int(line))), file=answers, flush=True)
+        try:
+            os.write(answers, json.dumps(answer_of(maker, int(line))).encode() + b"\n")
+        except BrokenPipeError:
+            break  # who started it is no more; the sample is there
     return 0
 
 
