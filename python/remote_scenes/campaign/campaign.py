@@ -15,7 +15,7 @@ from .pairs import Pair, read_pair
 from .places import NoSuchPlace, put
 from .sequence import Frames, read_frames
 from .settings import Labels, Picture, read_formats, read_keep, read_labels, read_picture
-from .text import CampaignError, Node, read_text
+from .text import CampaignError, Node, near, read_text
 from .variables import Draw, Variables, read_variables
 
 KEYS = ("campaign", "name", "description", "license", "seed", "samples", "scene", "simulation", "vary", "objects", "picture", "labels", "formats",
@@ -119,7 +119,23 @@ def read_campaign(path: FileName) -> Campaign:
         read_picture(keys.get("picture")), read_labels(keys.get("labels")), read_formats(keys.get("formats")), read_keep(keys.get("keep")), digest,
         keypoints_of(groups), frames, read_pair(keys.get("pair"), variables, groups, frames.count))
     campaign.texts(campaign.draw(0))
+    _check_products(campaign, keys)
     return campaign
+
+
+def _check_products(campaign: Campaign, keys: dict[str, Node]) -> None:
+    """CampaignError: a product that this campaign cannot have, or a class of the ground of a material that is not there."""
+    kinds = [s.get("kind") for s in campaign.simulation["sensors"] or () if isinstance(s, dict)]
+    wrong = (("formats", "kitti", campaign.formats, "frame_camera" in kinds, "a frame camera", "a sensor of kind frame_camera"),
+             ("formats", "panoptic", campaign.formats, bool(campaign.groups), "objects", "`objects`"),
+             ("keep", "flow", campaign.keep, campaign.frames.count > 1, "a sequence", "`sequence: {frames: 2}` or more"),
+             ("keep", "depth", campaign.keep, bool({"frame_camera", "orthographic"} & {*kinds}), "a sensor of known geometry", "orthographic or frame_camera"))
+    for key, name, chosen, there, needed, right in wrong:
+        if name in chosen and not there:
+            raise keys[key].error(f"'{name}' needs {needed}", right)
+    for material in campaign.stuff:
+        if material not in campaign.scene.get("materials", {}):
+            raise keys["labels"].error(f"the scene has no material '{material}'", near(material, campaign.scene.get("materials", {})))
 
 
 def _template(node: Node, folder: Path, wanted: str) -> tuple[Path, dict[str, Any]]:

@@ -89,6 +89,10 @@ class Distributions(Case):
         self.assertEqual(values[:4], [[1, "u", "U"], [2, "u", "U"], [3, "u", "U"], [1, "v", "V"]])
         self.assertEqual(set(Counter(map(tuple, values)).values()), {2})
         self.assertEqual(len(set(map(tuple, values))), 6)
+        # Of 10,000 samples as many in each cell of the factorial as can be, which random draws (the control) do not give.
+        for drawn, is_even in ((text, True), ("a: {choice: [1, 2, 3]}\nb: {choice: [u, v]}\nall: [$a, $b]", False)):
+            cells = Counter(map(tuple, self.drawn(drawn, "all")))
+            self.assertEqual((len(cells), chi_square(cells.values(), [N / 6] * 6) < 0.01), (6, is_even))
 
     def test_conditional(self):
         text = "k: {choice: [low, high], weights: [1, 3]}\nx: {by: k, cases: {low: {uniform: [0, 1]}, high: {uniform: [$edge, 3]}}}\nedge: 2\nboth: [$k, $x]"

@@ -23,6 +23,7 @@ from remote_scenes.campaign.label_files import write_coco
 from remote_scenes.campaign.launch import RANKS, shard_of_rank
 from remote_scenes.campaign.sheet import read_png, write_sheet
 from remote_scenes.campaign.slurm import slurm_script
+from remote_scenes.campaign.zarr_store import write_zarr
 
 SAMPLES = 4
 FORMATS = "formats: [coco, panoptic, dota, yolo, yolo_obb, geojson, webdataset, zarr, stac, croissant]\n"
@@ -215,8 +216,9 @@ class Engine(Case):
         old = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         try:
             resource.setrlimit(resource.RLIMIT_FSIZE, (50, limit[1]))
-            with self.assertRaises(OSError):
-                write_coco(read_campaign(path), folder)
+            for write in (write_coco, write_zarr):
+                with self.assertRaises(OSError):
+                    write(read_campaign(path), folder)
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, limit)
             signal.signal(signal.SIGXFSZ, old)
