@@ -159,14 +159,12 @@ def open_envi(image: FileName) -> xr.DataArray:
     """
     h = read_header(image)
     array = xr.DataArray(read_values(image, h), dims=("band", "y", "x"), coords={"band": h.band_names},
-                         name=Path(image).stem, attrs=_attributes(h))
-    unit = h.text("wavelength units").lower()
+                         name=Path(image).stem, attrs=attributes_of(h))
     for key, name, about in (("wavelength", "wavelength_um", "centre wavelength"),
                              ("fwhm", "fwhm_um", "full width at half maximum")):
         if numbers := h.per_band(key):
-            if unit not in _MICRON:
-                raise FormatError(f"{h.file}: 'wavelength units' is '{unit}'; known: {', '.join(_MICRON)}")
-            scaled = [n * _MICRON[unit] for n in numbers] if _MICRON[unit] != 1 else numbers
+            scale = micron_of(h)
+            scaled = [n * scale for n in numbers] if scale != 1 else numbers
             array = array.assign_coords({name: ("band", scaled, {"units": "um", "long_name": about})})
     if "wavelength_um" in array.coords:
         array["wavelength_um"].attrs["standard_name"] = "radiation_wavelength"
@@ -174,7 +172,16 @@ def open_envi(image: FileName) -> xr.DataArray:
     return add_coordinates(array, h.items("map info"), h.text("coordinate system string"), h.file)
 
 
-def _attributes(h: EnviHeader) -> dict[str, Any]:
+def micron_of(h: EnviHeader) -> float:
+    """Micrometres of one of the header's units of wavelength. FormatError: it is not known."""
+    unit = h.text("wavelength units").lower()
+    if unit not in _MICRON:
+        raise FormatError(f"{h.file}: 'wavelength units' is '{unit}'; known: {', '.join(_MICRON)}")
+    return _MICRON[unit]
+
+
+def attributes_of(h: EnviHeader) -> dict[str, Any]:
+    """What a header states of its image, as open_envi has it."""
     attrs: dict[str, Any] = {"long_name": re.split(r" of sensor |[;\n]", h.text("description"))[0]}
     if h.text("data units"):
         attrs["units"] = udunits(h.text("data units"))

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import ProgramMissing, ProgramWarning, error_of
-from .programs import find_program
+from .programs import FOLDER_VARIABLE, find_program
 
 NAME = "libremote_scenes.so.1"
 INTERFACE = 3
@@ -114,7 +114,12 @@ def _loaded(path: Path) -> ctypes.CDLL:
 
 
 def library() -> ctypes.CDLL:
-    """The library, loaded when it is first asked for."""
+    """The library, loaded when it is first asked for; looked for again when the environment names other folders."""
+    return _of(os.environ.get(FOLDER_VARIABLE), os.environ.get("PATH"))
+
+
+@lru_cache(maxsize=8)
+def _of(folder: str | None, path: str | None) -> ctypes.CDLL:
     return _loaded(find_library())
 
 

@@ -16,7 +16,7 @@ import xarray as xr
 from .envi import FormatError, open_envi, udunits
 from .tree import FileName
 
-_QUANTITIES = {"spectral radiance": "radiance", "top-of-atmosphere reflectance": "reflectance",
+QUANTITIES = {"spectral radiance": "radiance", "top-of-atmosphere reflectance": "reflectance",
                "brightness temperature": "brightness_temperature"}
 _ABOUT = ("description", "acquisition_time", "sun_azimuth_deg", "sun_elevation_deg", "default_bands")
 _TAKEN = re.compile(r"(.+)_(\d{4,})$")
@@ -68,7 +68,7 @@ class Result:
         """
         name = self._one(name)
         main = open_envi(self.folder / f"{name}.img")
-        quantity = _QUANTITIES.get(main.attrs["long_name"], "value")
+        quantity = QUANTITIES.get(main.attrs["long_name"], "value")
         dataset = xr.Dataset({quantity: _in_units(main)}, attrs={k: main.attrs[k] for k in _ABOUT if k in main.attrs})
         error = open_envi(self.folder / f"{name}_error.img")
         if interval := re.search(r"reaches ([\d.]+) standard errors", error.attrs["description"]):
@@ -177,7 +177,7 @@ class Result:
 def _located(dataset: xr.Dataset, places: xr.DataArray | None) -> xr.Dataset:
     """With the coordinates of every pixel, where they are known, and the time."""
     for i, band in enumerate(places["band"].values if places is not None else ()):
-        text, unit = _unit_of(str(band))
+        text, unit = unit_of(str(band))
         attrs = {"units": {"longitude": "degrees_east", "latitude": "degrees_north"}.get(text, "m"), "long_name": text}
         if text in ("longitude", "latitude", "height"):
             attrs["standard_name"] = "height_above_reference_ellipsoid" if text == "height" else text
@@ -206,7 +206,7 @@ def _flat(array: xr.DataArray) -> xr.DataArray:
     return array.isel(band=0, drop=True).drop_vars([c for c in ("wavelength_um", "fwhm_um") if c in array.coords])
 
 
-def _unit_of(column: str) -> tuple[str, str]:
+def unit_of(column: str) -> tuple[str, str]:
     """"range [m]" is a name and a unit."""
     match = re.fullmatch(r"(.*?) \[(.*)\]", column)
     return (match[1], match[2]) if match else (column, "")
@@ -214,7 +214,7 @@ def _unit_of(column: str) -> tuple[str, str]:
 
 def _truth(truth: xr.DataArray, bands: list[str]) -> dict[str, xr.DataArray]:
     """Columns of the truth by name; those that are there for every band are one variable of (band, y, x)."""
-    columns = [_unit_of(str(name)) for name in truth["band"].values]
+    columns = [unit_of(str(name)) for name in truth["band"].values]
     out: dict[str, xr.DataArray] = {}
     at = 0
     while at < len(columns):

@@ -9,9 +9,11 @@ from pathlib import Path
 from ..errors import ProgramError, ProgramMissing
 from ..programs import version as program_version
 from .campaign import read_campaign
+from .drawing import Drawer
 from .forecast import check_ends, forecast
+from .launch import leave_launcher, shard_of_rank
 from .run import preview, run
-from .sample import Maker
+from .shared import write_tree
 from .slurm import slurm_script
 from .text import CampaignError
 
@@ -21,7 +23,8 @@ def _arguments() -> argparse.ArgumentParser:
     parser.add_argument("campaign", help="the campaign's text (docs/guide/campaigns.md)")
     parser.add_argument("-o", "--output", metavar="FOLDER", help="the dataset; what is finished there stays, so that the same command goes on")
     parser.add_argument("--workers", type=_count, metavar="N", help="worker processes; one per core unless given; the samples do not depend on it")
-    parser.add_argument("--shard", type=_shard, default=(1, 1), metavar="I/N", help="every N-th sample from the I-th on, from 1")
+    parser.add_argument("--shard", type=_shard, default=(1, 1), metavar="I/N", help="every N-th sample from the I-th on, from 1; `rank`: of the ranks that mpirun or srun has started, "
+                        "this one's")
     parser.add_argument("--dry-run", action="store_true", help="check the ends of all distributions and forecast hours, bytes and errors from two samples")
     parser.add_argument("--preview", metavar="FILE.png", help="twelve samples with their labels on one sheet")
     parser.add_argument("--texts", type=_count, metavar="SAMPLE", help="write the texts and prepared scenes of one sample into the folder of -o")
@@ -37,6 +40,13 @@ def _count(text: str) -> int:
 
 
 def _shard(text: str) -> tuple[int, int]:
+    if text == "rank":
+        try:
+            shard = shard_of_rank()
+            leave_launcher()
+            return shard
+        except CampaignError as missing:
+            raise argparse.ArgumentTypeError(missing.message + "; " + missing.hint) from None
     match = re.fullmatch(r"(\d{1,7})/(\d{1,7})", text)
     if not match or not 1 <= int(match[1]) <= int(match[2]):
         raise argparse.ArgumentTypeError(f"'{text}' is no shard; the first of four is 1/4, the last 4/4")
@@ -72,7 +82,7 @@ def _run(options: argparse.Namespace) -> int:
         if options.texts >= campaign.samples:
             raise CampaignError(f"there is no sample {options.texts}", f"0 to {campaign.samples - 1}", str(campaign.path))
         folder.mkdir(parents=True, exist_ok=True)
-        Maker(campaign, folder, program_version()).draw(options.texts, folder)
+        Drawer(campaign, folder, program_version()).draw(options.texts, folder, write_tree)
         print(f"wrote {folder / 'simulation.yaml'}")
     elif options.slurm:
         print(slurm_script(campaign, folder, options.slurm, options.workers or 1), end="")

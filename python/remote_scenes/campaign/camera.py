@@ -37,6 +37,12 @@ class Camera(Protocol):
     def gsd_m(self, range_m: float) -> float:
         """Distance of neighbouring pixels across the line of sight, m."""
 
+    def depth(self, places: Numbers, distance: Numbers) -> Numbers:
+        """Of places (n, 3) that rays meet at distances (n), along the camera's axis, m; infinite where nothing is met."""
+
+    def record(self) -> dict[str, Any] | None:
+        """What labels in the camera's axes need; None of maps."""
+
 
 @dataclass(frozen=True)
 class MapCamera:
@@ -63,6 +69,13 @@ class MapCamera:
     def gsd_m(self, range_m: float) -> float:
         """The same everywhere."""
         return self.gsd
+
+    def depth(self, places: Numbers, distance: Numbers) -> Numbers:
+        """The rays are along the axis."""
+        return distance
+
+    def record(self) -> None:
+        """A map has no axes of its own."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +107,14 @@ class Pinhole:
     def gsd_m(self, range_m: float) -> float:
         """At a distance."""
         return range_m / self.focal
+
+    def depth(self, places: Numbers, distance: Numbers) -> Numbers:
+        """Of the rays' directions the part ahead."""
+        return np.where(np.isfinite(distance), (places - self.position) @ self.axes[2], np.inf)
+
+    def record(self) -> dict[str, Any]:
+        """Place, axes (right, down, ahead) and focal length in pixels."""
+        return {"position_m": self.position, "axes": self.axes, "focal_px": self.focal}
 
 
 def camera_of(sensor: Mapping[str, Any]) -> Camera | None:

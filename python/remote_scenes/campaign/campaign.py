@@ -10,14 +10,16 @@ from typing import Any, Mapping
 
 from ..tree import FileName
 from .draws import hashed
-from .objects import Group, read_objects
+from .objects import Group, keypoints_of, read_objects
+from .pairs import Pair, read_pair
 from .places import NoSuchPlace, put
+from .sequence import Frames, read_frames
 from .settings import Labels, Picture, read_formats, read_keep, read_labels, read_picture
-from .text import CampaignError, Node, read_text
+from .text import CampaignError, Node, near, read_text
 from .variables import Draw, Variables, read_variables
 
 KEYS = ("campaign", "name", "description", "license", "seed", "samples", "scene", "simulation", "vary", "objects", "picture", "labels", "formats",
-        "keep")
+        "keep", "sequence", "pair")
 MOST_SAMPLES = 10_000_000
 
 
@@ -43,6 +45,10 @@ class Campaign:
     keep: tuple[str, ...]
     digest: str
     """Of the three texts."""
+    keypoints: dict[str, list[str]]
+    """Names, of the classes that have some."""
+    frames: Frames
+    pair: Pair | None
 
     @property
     def classes(self) -> list[str]:
@@ -51,19 +57,33 @@ class Campaign:
         return [*self.labels.classes, *(c for c in there if c not in self.labels.classes)]
 
     @property
+    def stuff(self) -> dict[str, str]:
+        """The class of the ground of every material of the scene's text that has one, in the order of the classes."""
+        if self.labels.stuff is None:
+            return {name: name for name in self.scene.get("materials", {})}
+        return {material: name for name, materials in self.labels.stuff.items() for material in materials}
+
+    @property
     def scenes_return(self) -> bool:
         """Whether samples have scenes in common: nothing that the scene's text gets is continuous."""
         return not any(name.startswith("scene.") and self.variables.continuous(name) for name in self.variables.rules)
 
-    def draw(self, sample: int, forced: Mapping[str, Any] | None = None) -> Draw:
-        """All variables of a sample; forced: values in place of some draws."""
-        values = self.variables.values(self.seed, sample, self.samples, forced)
-        return Draw(self.variables, self.seed, sample, self.samples, values)
+    @property
+    def shapes_return(self) -> bool:
+        """Whether samples have the shapes of their scenes in common: only materials vary continuously, and none that has holes by a map."""
+        varied = [name for name in self.variables.rules if name.startswith("scene.") and self.variables.continuous(name)]
+        plain = {name for name, m in self.scene.get("materials", {}).items() if not (isinstance(m, dict) and ("map" in m or "maps" in m))}
+        return all(name.startswith("scene.materials.") and name.split(".")[2] in plain for name in varied)
+
+    def draw(self, sample: int, forced: Mapping[str, Any] | None = None, again: frozenset[str] | None = None) -> Draw:
+        """All variables of a sample; forced: values in place of some draws; again: those that the second picture of a pair draws again."""
+        values = self.variables.values(self.seed, sample, self.samples, forced, again)
+        return Draw(self.variables, self.seed, sample, self.samples, values, again)
 
     def texts(self, draw: Draw) -> tuple[dict[str, Any], dict[str, Any]]:
         """The scene's and the simulation's text of a sample, as trees, without objects. CampaignError: a place is not there."""
         trees = {"scene": copy.deepcopy(self.scene), "simulation": copy.deepcopy(self.simulation)}
-        trees["simulation"]["seed"] = hashed(self.seed, draw.sample, "render") % (1 << 31)
+        trees["simulation"]["seed"] = hashed(self.seed, draw.sample, "render again" if draw.later else "render") % (1 << 31)
         for name, rule in self.variables.rules.items():
             text, dot, place = name.partition(".")
             if dot and text in trees:
@@ -83,7 +103,7 @@ def read_campaign(path: FileName) -> Campaign:
     path = Path(path)
     scene_path, scene = _template(keys["scene"], path.parent, "world")
     simulation_path, simulation = _template(keys["simulation"], path.parent, "sensors")
-    variables = read_variables(keys.get("vary"))
+    variables = read_variables(keys.get("vary"), scene.get("curves") if isinstance(scene.get("curves"), dict) else {})
     for name, rule in variables.rules.items():
         if "." in name and name.partition(".")[0] not in ("scene", "simulation"):
             raise rule.node.error(f"'{name}' is in neither text", "scene.PLACE, simulation.PLACE, or a name without dots")
@@ -91,13 +111,31 @@ def read_campaign(path: FileName) -> Campaign:
     if groups and "scenes" in simulation:
         raise keys["objects"].error("a simulation with `scenes` takes no objects", "a simulation with `scene`, whatever it says there")
     digest = hashlib.sha256(b"\0".join(p.read_bytes() for p in (path, scene_path, simulation_path))).hexdigest()
+    frames = read_frames(keys.get("sequence"), simulation)
     campaign = Campaign(
         path, keys["name"].text() if "name" in keys else path.stem, keys["description"].text() if "description" in keys else "",
         keys["license"].text() if "license" in keys else "", keys["seed"].integer(0, (1 << 53) - 1) if "seed" in keys else 1,
         keys["samples"].integer(1, MOST_SAMPLES), scene, simulation, scene_path, simulation_path, variables, groups,
-        read_picture(keys.get("picture")), read_labels(keys.get("labels")), read_formats(keys.get("formats")), read_keep(keys.get("keep")), digest)
+        read_picture(keys.get("picture")), read_labels(keys.get("labels")), read_formats(keys.get("formats")), read_keep(keys.get("keep")), digest,
+        keypoints_of(groups), frames, read_pair(keys.get("pair"), variables, groups, frames.count))
     campaign.texts(campaign.draw(0))
+    _check_products(campaign, keys)
     return campaign
+
+
+def _check_products(campaign: Campaign, keys: dict[str, Node]) -> None:
+    """CampaignError: a product that this campaign cannot have, or a class of the ground of a material that is not there."""
+    kinds = [s.get("kind") for s in campaign.simulation["sensors"] or () if isinstance(s, dict)]
+    wrong = (("formats", "kitti", campaign.formats, "frame_camera" in kinds, "a frame camera", "a sensor of kind frame_camera"),
+             ("formats", "panoptic", campaign.formats, bool(campaign.groups), "objects", "`objects`"),
+             ("keep", "flow", campaign.keep, campaign.frames.count > 1, "a sequence", "`sequence: {frames: 2}` or more"),
+             ("keep", "depth", campaign.keep, bool({"frame_camera", "orthographic"} & {*kinds}), "a sensor of known geometry", "orthographic or frame_camera"))
+    for key, name, chosen, there, needed, right in wrong:
+        if name in chosen and not there:
+            raise keys[key].error(f"'{name}' needs {needed}", right)
+    for material in campaign.stuff:
+        if material not in campaign.scene.get("materials", {}):
+            raise keys["labels"].error(f"the scene has no material '{material}'", near(material, campaign.scene.get("materials", {})))
 
 
 def _template(node: Node, folder: Path, wanted: str) -> tuple[Path, dict[str, Any]]:

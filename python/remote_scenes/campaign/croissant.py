@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from .campaign import Campaign
-from .engine import write_whole
 from .figures import statistics
+from .whole_files import write_whole
 
 _CONTEXT: dict[str, Any] = {
     "@language": "en", "@vocab": "https://schema.org/", "cr": "http://mlcommons.org/croissant/", "sc": "https://schema.org/",

@@ -8,14 +8,16 @@ import datetime
 import math
 from dataclasses import dataclass, field
 from statistics import NormalDist
-from typing import Any, Callable, Protocol
+from typing import Any, Callable, Mapping, Protocol
 
 from .draws import latin, sobol, unit
+from .spectra import read_mixture, read_variability
 from .text import CampaignError, Node, near
 
 REFERENCE = "$"
 DRAWN = ("uniform", "integers", "normal", "log_uniform", "choice")
 SWEPT = ("grid", "zip")
+SPECTRAL = ("mixture", "variability")
 HOW = ("random", "latin", "sobol")
 _NORMAL = NormalDist()
 _DATE = "%Y-%m-%dT%H:%M:%SZ"
@@ -50,19 +52,23 @@ class Rule:
     """Whether by itself it takes more values than can be kept ready."""
 
 
-def read_rule(node: Node, key: str) -> Rule:
-    """A rule of the text. CampaignError with the place of what is wrong."""
+def read_rule(node: Node, key: str, curves: Mapping[str, Any] | None = None) -> Rule:
+    """A rule of the text; curves: those of the scene's text, for spectra. CampaignError with the place of what is wrong."""
     tree = node.value
     if isinstance(tree, dict):
-        kinds = [k for k in (*DRAWN, *SWEPT, "by") if k in tree]
+        kinds = [k for k in (*DRAWN, *SWEPT, "by", *SPECTRAL) if k in tree]
         if len(kinds) > 1:
             raise node.error(f"'{kinds[0]}' and '{kinds[1]}' exclude each other", "one kind of distribution")
         if kinds and kinds[0] in DRAWN:
             return _drawn(node, key, kinds[0])
         if kinds and kinds[0] in SWEPT:
             return _swept(node, key, kinds[0])
+        if kinds and kinds[0] in SPECTRAL:
+            return _spectral(node, key, kinds[0], curves or {})
         if kinds:
-            return _conditional(node, key)
+            return _conditional(node, key, curves)
+        if list(tree) == ["material"] and isinstance(tree["material"].value, dict):
+            return _material(node, key, curves)
     names = _references(node)
     return Rule(key, node, "constant", lambda c: _filled(node, c), names, () if names else (node.plain(),))
 
@@ -247,15 +253,37 @@ def _swept(node: Node, key: str, kind: str) -> Rule:
     return Rule(key, node, kind, value, names, () if names else tuple(n.plain() for n in items), (axis, len(items)))
 
 
-def _conditional(node: Node, key: str) -> Rule:
+def _spectral(node: Node, key: str, kind: str, curves: Mapping[str, Any]) -> Rule:
+    value, ends = (read_mixture if kind == "mixture" else read_variability)(node, curves)
+    return Rule(key, node, kind, lambda c: value(lambda name: c.number(f"{key} {name}")), (), ends, continuous=True)
+
+
+def _material(node: Node, key: str, curves: Mapping[str, Any] | None) -> Rule:
+    """A material of its own, whose parameters are rules."""
+    rules = {name: read_rule(n, f"{key}.{name}", curves) for name, n in node.value["material"].map().items()}
+    for rule in rules.values():
+        _only_random(rule, "a parameter of a material is drawn at random", "grid, zip, latin and sobol stand in variables of their own, as $NAME here")
+    names = tuple(n for rule in rules.values() for n in rule.names)
+    # Ends: each parameter at its own, the others at their first.
+    first = {name: rule.ends[0] for name, rule in rules.items() if rule.ends}
+    ends = tuple({**first, name: e} for name, rule in rules.items() for e in rule.ends) if len(first) == len(rules) else ()
+    return Rule(key, node, "material", lambda c: {name: rule.value(c) for name, rule in rules.items()}, names, ends,
+                continuous=any(r.continuous for r in rules.values()))
+
+
+def _only_random(rule: Rule, wrong: str, right: str) -> None:
+    if rule.kind in SWEPT or rule.how != "random":
+        raise rule.node.error(wrong, right)
+
+
+def _conditional(node: Node, key: str, curves: Mapping[str, Any] | None) -> Rule:
     keys = node.map(("by", "cases", "else"), ("by", "cases"))
     name = keys["by"].text()
     # One draw for all cases: a case that is added changes no other one.
-    cases = {case: read_rule(n, key) for case, n in keys["cases"].map().items()}
-    other = read_rule(keys["else"], key) if "else" in keys else None
+    cases = {case: read_rule(n, key, curves) for case, n in keys["cases"].map().items()}
+    other = read_rule(keys["else"], key, curves) if "else" in keys else None
     for rule in (*cases.values(), *([other] if other else [])):
-        if rule.kind in SWEPT or rule.how != "random":
-            raise rule.node.error("a case is drawn at random", "grid, zip, latin and sobol stand outside of cases")
+        _only_random(rule, "a case is drawn at random", "grid, zip, latin and sobol stand outside of cases")
 
     def value(context: Context) -> Any:
         decides = context.reference(name, keys["by"])

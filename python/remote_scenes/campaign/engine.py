@@ -13,6 +13,7 @@ import socket
 import subprocess
 import sys
 from collections import deque
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Callable, Iterable
@@ -21,8 +22,10 @@ from ..errors import ProgramError
 from ..programs import version as program_version
 from .campaign import Campaign, as_json
 from .exports import finished
+from .launch import run_by
 from .sample import Maker, refusal
 from .text import CampaignError, Refused
+from .whole_files import write_whole
 
 DEATHS = 3
 Tell = Callable[[str], None]
@@ -65,31 +68,6 @@ def prepare_folder(campaign: Campaign, folder: Path) -> str:
     return version
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """A file whole or not at all; one that holds the same stays as it is."""
-    if path.exists() and path.read_bytes() == content:
-        return
-    path.parent.mkdir(parents=True, exist_ok=True)
-    new = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}")
-    try:
-        new.write_bytes(content)
-        os.replace(new, path)
-    finally:
-        new.unlink(missing_ok=True)
-
-
-def write_parts(path: Path, parts: Iterable[str]) -> None:
-    """As write_whole, of a text that is never in memory as a whole."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    new = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}")
-    try:
-        with new.open("w", encoding="utf-8") as file:
-            file.writelines(parts)
-        os.replace(new, path)
-    finally:
-        new.unlink(missing_ok=True)
-
-
 def _clear(folder: Path) -> None:
     """Takes away what workers of this machine that are no more have left unfinished."""
     mine = re.compile(rf"\.[0-9a-f]+\.{re.escape(socket.gethostname())}\.(\d+)(\.h5|\.yaml)?")
@@ -116,8 +94,9 @@ def of_shard(samples: int, shard: tuple[int, int]) -> range:
     return range(shard[0] - 1, samples, shard[1])
 
 
-def run_samples(campaign: Campaign, folder: Path, numbers: Iterable[int], workers: int, version: str, tell: Tell) -> Tally:
-    """Makes samples; workers: processes, 0 = within this one. CampaignError: the first refusal; what is finished stays."""
+def run_samples(campaign: Campaign, folder: Path, numbers: Iterable[int], workers: int, version: str, tell: Tell, executor: Executor | None = None) -> Tally:
+    """Makes samples; workers: processes, 0 = within this one; executor: makes them instead. CampaignError: the first refusal; what is finished
+    stays."""
     maker, tally = Maker(campaign, folder, version), Tally()
     wanted = []
     for number in numbers:
@@ -125,7 +104,9 @@ def run_samples(campaign: Campaign, folder: Path, numbers: Iterable[int], worker
             tally.there += 1
         else:
             wanted.append(number)
-    if workers == 0:
+    if executor:
+        run_by(executor, campaign, folder, wanted, version, lambda answer: _count(answer, tally, len(wanted), "the executor", tell))
+    elif workers == 0:
         for number in wanted:
             try:
                 maker.make(number)
@@ -135,6 +116,15 @@ def run_samples(campaign: Campaign, folder: Path, numbers: Iterable[int], worker
     elif wanted:
         _Crew(campaign, folder, version, tell, tally, deque(wanted)).work(min(workers, len(wanted)))
     return tally
+
+
+def _count(answer: dict[str, Any], tally: Tally, wanted: int, who: str, tell: Tell) -> None:
+    """Counts a sample that is made."""
+    tally.made += 1
+    tally.cpu_s += answer["cpu_s"]
+    tally.seconds += answer["seconds"]
+    tally.rss_kb.append(answer["rss_kb"])
+    tell(f"sample {answer['sample']}: {tally.made} of {wanted} in {answer['cpu_s']:.3f} s of the processor, {answer['rss_kb'] / 1024:.2f} MiB in {who}")
 
 
 class _Crew:
@@ -204,12 +194,7 @@ class _Crew:
         answer: dict[str, Any] = json.loads(line)
         if "error" in answer:
             raise Refused(str(answer["error"]))
-        tally = self._tally
-        tally.made += 1
-        tally.cpu_s += answer["cpu_s"]
-        tally.seconds += answer["seconds"]
-        tally.rss_kb.append(answer["rss_kb"])
-        self._tell(f"sample {answer['sample']}: {tally.made} of {self._all} in {answer['cpu_s']:.2f} s of the processor")
+        _count(answer, self._tally, self._all, f"worker {worker.pid}", self._tell)
         self._give(worker, selector)
 
     def _mourn(self, worker: subprocess.Popen[str], selector: selectors.BaseSelector) -> None:
@@ -228,4 +213,4 @@ class _Crew:
         self._start(selector)
 
 
-__all__ = ["Tally", "of_shard", "prepare_folder", "run_samples", "write_parts", "write_whole"]
+__all__ = ["Tally", "of_shard", "prepare_folder", "run_samples"]

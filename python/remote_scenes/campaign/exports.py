@@ -4,7 +4,11 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any, Iterable, Iterator
+
+
+PARTS = ("error", "quality", "truth", "tag", "material", "depth", "flow", "panoptic", "change")
+"""What files beside an image add to its name."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,23 @@ class Image:
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
         return int(self.about["width"]), int(self.about["height"])
+
+
+def own_files(folder: Path, image: Image) -> list[tuple[str, Path]]:
+    """The files of an image in its sample, by name, each with what it adds to the image's name: empty, or error, quality, panoptic ..."""
+    name, found = str(image.about["name"]), []
+    for file in sorted((folder / image.file).parent.iterdir()):
+        stem = file.name.partition(".")[0]
+        part = stem[len(name):].lstrip("_") if stem.startswith(name) else "-"
+        if stem == name or (stem == f"{name}_{part}" and part in PARTS):
+            found.append((part, file))
+    return found
+
+
+def joined(entries: Iterable[dict[str, Any]]) -> Iterator[str]:
+    """Entries of a JSON list, a line each."""
+    for i, entry in enumerate(entries):
+        yield (",\n" if i else "\n") + json.dumps(entry)
 
 
 def finished(folder: Path) -> list[int]:

@@ -12,9 +12,10 @@ from typing import Any, Sequence
 from ..errors import InputError, ProgramError
 from ..programs import run_program
 from .campaign import Campaign
+from .drawing import Drawer
 from .exports import images
 from .sample import Maker, refusal
-from .shared import UNUSED, with_files, write_tree
+from .shared import UNUSED, with_files, write_json
 from .figures import statistics
 from .text import CampaignError, Refused
 
@@ -60,7 +61,7 @@ def check_ends(campaign: Campaign, version: str) -> None:
         folder = Path(name)
         _check_template(campaign)
         try:
-            drawn = Maker(campaign, folder, version).draw(0, folder)
+            drawn = Drawer(campaign, folder, version).draw(0, folder)
         except ProgramError as problem:
             raise Refused(refusal(0, problem)) from None
         if said := _refused("dirsig-render", folder, campaign, "simulation.yaml"):
@@ -78,7 +79,7 @@ def check_ends(campaign: Campaign, version: str) -> None:
                     if tree == before:
                         continue
                     whole = tree if text == "scene" else {**parts, **{k: v for k, v in with_files(tree, campaign.simulation_path.parent).items() if k != "scene"}}
-                    write_tree(whole, folder / "checked.yaml")
+                    write_json(whole, folder / "checked.yaml")
                     if said := _refused(program, folder, campaign):
                         raise rule.node.error(f"'{key}' of {value!r}, which this distribution reaches, is refused: {said}", "a narrower distribution")
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 import json
 from itertools import chain
 from pathlib import Path
-from typing import Any, Callable, Iterable, Iterator
+from typing import Any, Callable, Iterator
 
 from .campaign import Campaign
-from .engine import write_parts, write_whole
-from .exports import Image, images
+from .exports import Image, images, joined
+from .whole_files import write_parts, write_whole
 
 DIFFICULT_OCCLUSION = 0.5
 """DOTA's mark `difficult`: more than this is hidden, or lies beyond the edge."""
@@ -22,29 +22,32 @@ DIFFICULT_OCCLUSION = 0.5
 def write_coco(campaign: Campaign, folder: Path) -> None:
     """`annotations.json`; keys beyond COCO's are those of our labels."""
     licenses = [{"id": 1, "name": campaign.license, "url": campaign.license}] if campaign.license else []
-    categories = [{"id": i, "name": name, "supercategory": "object"} for i, name in enumerate(campaign.classes, 1)]
+    categories = [{"id": i, "name": name, "supercategory": "object", **({"keypoints": campaign.keypoints[name], "skeleton": []} if name in campaign.keypoints else {})}
+                  for i, name in enumerate(campaign.classes, 1)]
     head = {"info": {"description": campaign.description or campaign.name, "version": "1"}, "licenses": licenses, "categories": categories}
 
     def pictures() -> Iterator[dict[str, Any]]:
         for number, image in enumerate(images(folder), 1):
             width, height = image.size
             date = {"date_captured": image.about["time"]} if "time" in image.about else {}
-            yield {"id": number, "file_name": image.file, "width": width, "height": height, "sample": image.sample, **date}
+            yield {"id": number, "file_name": image.file, "width": width, "height": height, "sample": image.sample, **date, **_of_video(image)}
 
     def annotations() -> Iterator[dict[str, Any]]:
         number = 0
         for picture, image in enumerate(images(folder), 1):
             for label in image.labels:
                 number += 1
-                yield {"id": number, "image_id": picture, "iscrowd": 0, **label}
+                track = {"video_id": image.sample + 1, "track_id": label["object"]} if {"frame", "moment"} & set(image.about) else {}
+                yield {"id": number, "image_id": picture, "iscrowd": 0, **track, **label}
 
     parts = (json.dumps(head)[:-1], ', "images": [')
-    write_parts(folder / "annotations.json", chain(parts, _joined(pictures()), ['], "annotations": ['], _joined(annotations()), ["]}\n"]))
+    write_parts(folder / "annotations.json", chain(parts, joined(pictures()), ['], "annotations": ['], joined(annotations()), ["]}\n"]))
 
 
-def _joined(entries: Iterable[dict[str, Any]]) -> Iterator[str]:
-    for i, entry in enumerate(entries):
-        yield (",\n" if i else "\n") + json.dumps(entry)
+def _of_video(image: Image) -> dict[str, int]:
+    """A sequence is a video, and a pair one of two frames; objects keep their numbers."""
+    number = image.about.get("frame", image.about.get("moment"))
+    return {} if number is None else {"video_id": image.sample + 1, "frame_index": number}
 
 
 def write_dota(campaign: Campaign, folder: Path) -> None:
@@ -104,4 +107,4 @@ def write_geojson(campaign: Campaign, folder: Path) -> None:
                     yield {"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
                            "properties": {"image": image.key, "file": image.file, **{k: label[k] for k in kept if k in label}}}
 
-    write_parts(folder / "labels.geojson", chain(['{"type": "FeatureCollection", "features": ['], _joined(features()), ["\n]}\n"]))
+    write_parts(folder / "labels.geojson", chain(['{"type": "FeatureCollection", "features": ['], joined(features()), ["\n]}\n"]))

@@ -17,6 +17,7 @@ from ..traced import TracedScene
 from .boxes import along, corners_of, smallest
 from .camera import Camera
 from .earth import Frame
+from .keypoints import keypoints
 from .placement import Placed
 from .silhouettes import Pose, Silhouette, box_corners, silhouette
 
@@ -41,12 +42,12 @@ def label_image(dataset: xr.Dataset, placed: Sequence[Placed], items: dict[str, 
     names = dataset["tag"].attrs["class_names"]
     tag = dataset["tag"].values
     out = []
-    for number, one in enumerate(placed, 1):
+    for one in placed:
         mask = tag == names.index(one.tag) if one.tag in names else np.zeros(tag.shape, bool)
         if int(mask.sum()) < min_pixels:
             continue
-        label = {"object": number, "class": one.class_name, "category_id": classes.index(one.class_name) + 1, **_of_mask(mask, segmentation),
-                 **_pose(one, items[one.place], frame), **_measured(dataset, mask)}
+        label = {"object": one.number, "class": one.class_name, "category_id": classes.index(one.class_name) + 1, **_of_mask(mask, segmentation),
+                 **_pose(one, items[one.place], frame, sight.camera.time_s if sight else 0.0), **_measured(dataset, mask)}
         label |= _geometry(one, items[one.place], mask, sight)
         out.append(rounded(label))
     return out
@@ -78,14 +79,14 @@ def _of_mask(mask: npt.NDArray[np.bool_], segmentation: str) -> dict[str, Any]:
             "segmentation": polygons or {"size": list(mask.shape), "counts": _run_lengths(mask)}}
 
 
-def pose_of(one: Placed) -> Pose:
-    """The pose of an object."""
-    return Pose(np.array(one.position_m), one.heading_deg, one.scale)
+def pose_of(one: Placed, time_s: float) -> Pose:
+    """The pose of an object at a time."""
+    return Pose(np.array(one.at(time_s)), one.heading_deg, one.scale)
 
 
-def _pose(one: Placed, item: TracedScene, frame: Frame | None) -> dict[str, Any]:
-    corners = box_corners(item.bounds, pose_of(one))
-    pose: dict[str, Any] = {"position_m": one.position_m, "heading_deg": one.heading_deg, "scale": one.scale,
+def _pose(one: Placed, item: TracedScene, frame: Frame | None, time_s: float) -> dict[str, Any]:
+    corners = box_corners(item.bounds, pose_of(one, time_s))
+    pose: dict[str, Any] = {"position_m": one.at(time_s), "heading_deg": one.heading_deg, "scale": one.scale,
                             "size_m": (item.bounds[1] - item.bounds[0]) * one.scale, "box_3d_m": corners}
     if frame:
         pose["footprint_lon_lat"] = [degrees(frame, corners[i]) for i in (0, 1, 3, 2)]
@@ -118,19 +119,24 @@ def _mean(values: npt.NDArray[Any]) -> float | None:
 
 def _geometry(one: Placed, item: TracedScene, mask: npt.NDArray[np.bool_], sight: Sight | None) -> dict[str, Any]:
     """Where the sensor's geometry is not known the oriented box is the smallest around the mask."""
-    by_mask = {"obb": smallest(corners_of(mask)), "obb_of": "mask"}
     if sight is None:
-        return by_mask
-    pose = pose_of(one)
+        return _by_mask(mask)
+    pose = pose_of(one, sight.camera.time_s)
     corners = box_corners(item.bounds, pose)
     seen = silhouette(sight.camera, item, pose, corners, sight.things.tags.index(one.tag), sight.things, sight.backdrop, sight.rays)
     if seen is None:
-        return by_mask
+        return _by_mask(mask)
     at, distance = sight.camera.project(corners)
     geometry: dict[str, Any] = {"box_3d_px": at, "box_3d_range_m": distance, "occlusion": seen.occlusion, "truncation": seen.truncation}
+    if one.keypoints:
+        geometry |= keypoints(sight.camera, pose, one.keypoints, sight.things, sight.backdrop)
     if np.isfinite(seen.range_m):
         geometry["gsd_m"] = sight.camera.gsd_m(seen.range_m)
-    return {**(by_mask if not len(seen.x) else {"obb": _oriented(seen, pose, corners, sight.camera), "obb_of": "silhouette"}), **geometry}
+    return {**(_by_mask(mask) if not len(seen.x) else {"obb": _oriented(seen, pose, corners, sight.camera), "obb_of": "silhouette"}), **geometry}
+
+
+def _by_mask(mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
+    return {"obb": smallest(corners_of(mask)), "obb_of": "mask"}
 
 
 def _oriented(seen: Silhouette, pose: Pose, corners: npt.NDArray[np.float64], camera: Camera) -> npt.NDArray[np.float64]:

@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Sequence
 
 from .distributions import SWEPT, Rule, read_rule
 from .earth import Frame
@@ -27,6 +27,8 @@ class Item:
     materials: dict[str, Rule]
     scale: Rule | None
     node: Node
+    keypoints: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    """In the object's frame, m."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,8 @@ class Group:
     on: str | None
     attempts: int
     node: Node
+    speed: Rule | None = None
+    """m/s along the heading, from second 0 on."""
 
 
 def read_objects(node: Node | None, scene: dict[str, Any], variables: Variables, folder: Path) -> tuple[Group, ...]:
@@ -59,14 +63,14 @@ def read_objects(node: Node | None, scene: dict[str, Any], variables: Variables,
 
 
 def _group(name: str, node: Node, scene: dict[str, Any], variables: Variables, frame: Frame | None, folder: Path) -> Group:
-    keys = node.map(("catalogue", "count", "where", "heading_deg", "spacing_m", "whole", "height_m", "on", "attempts"), ("catalogue", "count", "where"))
+    keys = node.map(("catalogue", "count", "where", "heading_deg", "spacing_m", "whole", "height_m", "on", "attempts", "speed_m_s"), ("catalogue", "count", "where"))
     entries = keys["catalogue"].map()
     if not entries:
         raise keys["catalogue"].error("the catalogue is empty", "at least one entry, as `car: {place: NAME}`")
     items = tuple(_item(key, inner, scene, variables) for key, inner in entries.items())
     if not any(i.weight > 0 for i in items):
         raise keys["catalogue"].error("all weights are 0", "one above 0")
-    rules = {key: _rule(keys[key], key, variables) for key in ("count", "heading_deg", "height_m") if key in keys}
+    rules = {key: _rule(keys[key], key, variables) for key in ("count", "heading_deg", "height_m", "speed_m_s") if key in keys}
     spacing = keys["spacing_m"].number(0, 1e6) if "spacing_m" in keys else 0.0
     whole = keys["whole"].flag() if "whole" in keys else True
     attempts = keys["attempts"].integer(1, 1_000_000) if "attempts" in keys else 1000
@@ -77,18 +81,18 @@ def _group(name: str, node: Node, scene: dict[str, Any], variables: Variables, f
     if on is not None and "height_m" in keys:
         raise keys["on"].error("'on' and 'height_m' exclude each other")
     return Group(name, items, rules["count"], read_region(keys["where"], frame, folder), rules.get("heading_deg"), spacing, whole,
-                 rules.get("height_m"), on, attempts, node)
+                 rules.get("height_m"), on, attempts, node, rules.get("speed_m_s"))
 
 
 def _item(name: str, node: Node, scene: dict[str, Any], variables: Variables) -> Item:
-    keys = node.map(("place", "class", "weight", "materials", "scale"), ("place",))
+    keys = node.map(("place", "class", "weight", "materials", "scale", "keypoints"), ("place",))
     place, known = keys["place"].text(), [*scene.get("objects", {}), *scene.get("groups", {})]
     if place not in known:
         raise keys["place"].error(f"the scene has no object or group '{place}'", near(place, known))
     class_name = keys["class"].text() if "class" in keys else name
     if not re.fullmatch(CLASS_NAME, class_name):
         raise keys.get("class", node).error(f"'{class_name}' is no name of a class", "letters, digits, blanks, - and _, at most 48")
-    materials = {key: _rule(n, f"materials.{key}", variables) for key, n in (keys["materials"].map().items() if "materials" in keys else ())}
+    materials = {key: _rule(n, f"materials.{key}", variables, scene.get("curves")) for key, n in (keys["materials"].map().items() if "materials" in keys else ())}
     there = scene.get("materials", {})
     for key, rule in materials.items():
         for one in ((key,) if key != EVERYTHING else ()) + tuple(e for e in rule.ends if isinstance(e, str)):
@@ -98,12 +102,24 @@ def _item(name: str, node: Node, scene: dict[str, Any], variables: Variables) ->
     scale = _rule(keys["scale"], "scale", variables) if "scale" in keys else None
     if scale and any(isinstance(e, (int, float)) and not 1e-6 <= e <= 1e6 for e in scale.ends):
         raise scale.node.error("a scale is out of range", "1e-06 to 1e+06")
-    return Item(name, class_name, place, weight, materials, scale, node)
+    keypoints = {key: n.numbers(3) for key, n in (keys["keypoints"].map().items() if "keypoints" in keys else ())}
+    return Item(name, class_name, place, weight, materials, scale, node, keypoints)
 
 
-def _rule(node: Node, key: str, variables: Variables) -> Rule:
+def keypoints_of(groups: Sequence[Group]) -> dict[str, list[str]]:
+    """Names of the keypoints of every class that has some. CampaignError: one item of a class has others than another one."""
+    found: dict[str, list[str]] = {}
+    for item in (i for group in groups for i in group.items):
+        names = list(item.keypoints)
+        if found.setdefault(item.class_name, names) != names:
+            raise item.node.error(f"'{item.class_name}' has the keypoints {', '.join(names) or 'none'} here, elsewhere {', '.join(found[item.class_name]) or 'none'}",
+                                  "the same names in the same order for all items of a class")
+    return {name: points for name, points in found.items() if points}
+
+
+def _rule(node: Node, key: str, variables: Variables, curves: dict[str, Any] | None = None) -> Rule:
     """A rule of an object, which is drawn at random for each."""
-    rule = read_rule(node, key)
+    rule = read_rule(node, key, curves)
     if rule.kind in SWEPT or rule.how != "random":
         raise node.error("what belongs to objects is drawn at random", "grid, zip, latin and sobol stand under `vary`")
     for name, at in rule.names:

@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import count
 from typing import Any, Callable, Iterator, Mapping, Sequence
 
+from .distributions import Rule
 from .draws import unit
 from .objects import Group, Item
 from .regions import Point, Slots
@@ -13,12 +14,13 @@ from .text import CampaignError, Node
 from .variables import Draw
 
 Bounds = tuple[tuple[float, float, float], tuple[float, float, float]]
+Ground = Callable[["str | None", float, float], "float | None"]
 MOST_OBJECTS = 100_000
 
 
 @dataclass(frozen=True)
 class Placed:
-    """One object. tag: of it alone in the truth; heading_deg: compass, of its +y axis; materials: what stands for those of its item."""
+    """One object. tag: of it alone in the truth; heading_deg: compass, of its +y axis; materials: those of its item that others stand for."""
 
     tag: str
     group: str
@@ -28,7 +30,23 @@ class Placed:
     position_m: tuple[float, float, float]
     heading_deg: float
     scale: float
-    materials: Mapping[str, str]
+    materials: Mapping[str, str | dict[str, Any]]
+    """What stands for a material: the name of another one, or a material of this object alone."""
+    speed_m_s: float = 0.0
+    """Along the heading; position_m is that of second 0."""
+    keypoints: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    """In the object's frame, m."""
+
+    @property
+    def number(self) -> int:
+        """Of the object in its sample, from 1; both pictures of a pair have the same."""
+        return int(self.tag.rpartition(".")[2])
+
+    def at(self, time_s: float) -> tuple[float, float, float]:
+        """Where it is at a time."""
+        a, way = math.radians(self.heading_deg), self.speed_m_s * time_s
+        x, y, z = self.position_m
+        return (x + way * math.sin(a), y + way * math.cos(a), z) if way else self.position_m
 
 
 class ObjectDraw:
@@ -71,7 +89,7 @@ def apart(a: Sequence[Point], b: Sequence[Point], gap_m: float) -> bool:
     return False
 
 
-class _Taken:
+class Taken:
     """Footprints that are there, with circles around them, so that only neighbours are compared in full."""
 
     def __init__(self) -> None:
@@ -85,6 +103,10 @@ class _Taken:
                 return False
         return True
 
+    def add_placed(self, one: Placed, bounds: Bounds) -> None:
+        """Takes the place of an object that is there."""
+        self.add(footprint(bounds, one.position_m[0], one.position_m[1], one.heading_deg, one.scale))
+
     def add(self, corners: list[Point]) -> None:
         """Takes the place."""
         radius, middle = _circle(corners)
@@ -96,29 +118,33 @@ def _circle(corners: Sequence[Point]) -> tuple[float, Point]:
     return max(math.hypot(px - x, py - y) for px, py in corners), (x, y)
 
 
-def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bounds],
-              ground: Callable[[str | None, float, float], float | None]) -> list[Placed]:
+def place_all(groups: Sequence[Group], draw: Draw, bounds: Callable[[str], Bounds], ground: Ground) -> list[Placed]:
     """The objects of a sample. bounds: of an object or group of the scene in its own frame, m; ground: height of what is below a place, m, of
     all or of the placements of one name, or None. CampaignError with the place in the text where an object finds no room."""
-    taken, out = _Taken(), list[Placed]()
+    taken, out = Taken(), list[Placed]()
     for group in groups:
         slots = count()  # the next one that is free
         for number in range(_count(group, draw)):
-            context = ObjectDraw(draw, group.name, number)
-            item = _item(group, context)
-            scale = _number(item.scale, context) if item.scale else 1.0
-            if not 1e-6 <= scale <= 1e6:
-                raise item.node.error(f"sample {draw.sample}: the scale {scale:g} is out of range", "1e-06 to 1e+06")
-            materials = {key: str(rule.value(context)) for key, rule in item.materials.items()}
-            box = bounds(item.place)
-            x, y, heading = _find(group, number, context, draw, box, scale, taken, slots)
-            z = _number(group.height, context) if group.height else ground(group.on, x, y)
-            if z is None:
-                raise group.node.error(f"sample {draw.sample}: nothing is below object {number} of '{group.name}' at ({x:.2f}, {y:.2f})",
-                                       "ground there, or a `height_m`")
-            tag = f"{item.class_name}.{len(out) + 1}"
-            out.append(Placed(tag, group.name, item.name, item.class_name, item.place, (x, y, z), heading, scale, materials))
+            out.append(place_one(group, number, draw, bounds, ground, taken, slots, len(out) + 1))
     return out
+
+
+def place_one(group: Group, number: int, draw: Draw, bounds: Callable[[str], Bounds], ground: Ground, taken: Taken, slots: Iterator[int],
+              whole_number: int) -> Placed:
+    """One object, which takes its place. number: of the object in its group, which its draws depend on; whole_number: of the object in the sample, from 1."""
+    context = ObjectDraw(draw, group.name, number)
+    item = _item(group, context)
+    scale = _number(item.scale, context) if item.scale else 1.0
+    if not 1e-6 <= scale <= 1e6:
+        raise item.node.error(f"sample {draw.sample}: the scale {scale:g} is out of range", "1e-06 to 1e+06")
+    materials = {key: _material(rule, context) for key, rule in item.materials.items()}
+    x, y, heading = _find(group, number, context, draw, bounds(item.place), scale, taken, slots)
+    z = _number(group.height, context) if group.height else ground(group.on, x, y)
+    if z is None:
+        raise group.node.error(f"sample {draw.sample}: nothing is below object {number} of '{group.name}' at ({x:.2f}, {y:.2f})",
+                               "ground there, or a `height_m`")
+    return Placed(f"{item.class_name}.{whole_number}", group.name, item.name, item.class_name, item.place, (x, y, z), heading, scale, materials,
+                  _number(group.speed, context) if group.speed else 0.0, item.keypoints)
 
 
 def _count(group: Group, draw: Draw) -> int:
@@ -141,6 +167,13 @@ def _item(group: Group, context: ObjectDraw) -> Item:
     return [i for i in group.items if i.weight > 0][-1]
 
 
+def _material(rule: Rule, context: ObjectDraw) -> str | dict[str, Any]:
+    value = rule.value(context)
+    if not isinstance(value, (str, dict)):
+        raise rule.node.error(f"{value!r} is no material", "the name of one of the scene, or {material: {model: ..., ...}}")
+    return value
+
+
 def _number(rule: Any, context: ObjectDraw) -> float:
     value = rule.value(context)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
@@ -148,7 +181,7 @@ def _number(rule: Any, context: ObjectDraw) -> float:
     return float(value)
 
 
-def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bounds, scale: float, taken: _Taken,
+def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bounds, scale: float, taken: Taken,
           slots: Iterator[int]) -> tuple[float, float, float]:
     """A place with room; of slots the next one that has it."""
     turned = _number(group.heading, context) if group.heading else 0.0
@@ -170,4 +203,4 @@ def _find(group: Group, number: int, context: ObjectDraw, draw: Draw, box: Bound
     raise group.node.error(f"sample {draw.sample}: object {number} of '{group.name}': no place has room in {tried} attempts", "fewer objects, less `spacing_m`, or more room")
 
 
-__all__ = ["Bounds", "CampaignError", "Placed", "apart", "footprint", "place_all"]
+__all__ = ["Bounds", "CampaignError", "Ground", "Placed", "Taken", "apart", "footprint", "place_all", "place_one"]

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable
@@ -11,20 +12,26 @@ from ..errors import ProgramError
 from ..programs import version as program_version
 from ..tree import FileName
 from .campaign import Campaign, read_campaign
+from .cog import check_cog, write_cog
 from .croissant import write_croissant
 from .engine import Tally, Tell, of_shard, prepare_folder, run_samples
 from .exports import finished, images
 from .forecast import check_ends
+from .kitti import write_kitti
 from .label_files import write_coco, write_dota, write_geojson, write_yolo, write_yolo_obb
+from .panoptic import write_panoptic
+from .settings import FORMATS
 from .sheet import write_sheet
 from .stac import write_stac
 from .text import CampaignError
 from .webdataset import write_webdataset
+from .zarr_store import write_zarr
 
 PREVIEWED = 12
 _WRITERS: dict[str, Callable[[Campaign, Path], None]] = {
-    "coco": write_coco, "dota": write_dota, "yolo": write_yolo, "yolo_obb": write_yolo_obb, "geojson": write_geojson,
-    "webdataset": write_webdataset, "stac": write_stac}
+    "coco": write_coco, "panoptic": write_panoptic, "dota": write_dota, "yolo": write_yolo, "yolo_obb": write_yolo_obb, "kitti": write_kitti, "geojson": write_geojson,
+    "webdataset": write_webdataset, "zarr": write_zarr, "cog": write_cog,
+    "stac": write_stac}
 
 
 @dataclass(frozen=True)
@@ -37,19 +44,23 @@ class Outcome:
 
 
 def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None = None, shard: tuple[int, int] = (1, 1),
-        tell: Tell | None = None) -> Outcome:
+        tell: Tell | None = None, executor: Executor | None = None) -> Outcome:
     """Makes the samples of a campaign that are not there yet, and writes its lists when all are. workers: processes, one per core unless given,
-    0 = within this process; shard: (i, n), every n-th sample from the i-th on. CampaignError: something is refused; what is finished stays."""
+    0 = within this process; shard: (i, n), every n-th sample from the i-th on; executor: makes samples in place of workers, where the same files are
+    seen (concurrent.futures; of Dask `Client.get_executor()`). CampaignError: something is refused; what is finished stays."""
     campaign = campaign if isinstance(campaign, Campaign) else read_campaign(campaign)
     folder = Path(folder)
     if not 1 <= shard[0] <= shard[1]:
         raise ValueError(f"shard {shard[0]}/{shard[1]}: the first is 1/{shard[1]}, the last {shard[1]}/{shard[1]}")
+    if "cog" in campaign.formats:
+        check_cog(campaign)
     version = prepare_folder(campaign, folder)
     speak = tell or (lambda _: None)
     if not finished(folder):
         check_ends(campaign, version)
     try:
-        tally = run_samples(campaign, folder, of_shard(campaign.samples, shard), os.cpu_count() or 1 if workers is None else workers, version, speak)
+        tally = run_samples(campaign, folder, of_shard(campaign.samples, shard), os.cpu_count() or 1 if workers is None else workers, version, speak,
+                            executor)
         complete = len(finished(folder)) == campaign.samples
         if complete:
             _write_lists(campaign, folder, version)
@@ -59,8 +70,8 @@ def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None 
 
 
 def _write_lists(campaign: Campaign, folder: Path, version: str) -> None:
-    for name in campaign.formats:
-        if name in _WRITERS:
+    for name in FORMATS:  # cards after what they name
+        if name in campaign.formats and name in _WRITERS:
             _WRITERS[name](campaign, folder)
     if "croissant" in campaign.formats:
         write_croissant(campaign, folder, version)

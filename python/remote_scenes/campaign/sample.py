@@ -6,7 +6,7 @@ import os
 import shutil
 import socket
 import warnings
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Sequence
 
@@ -15,35 +15,20 @@ import xarray as xr
 
 from ..chips import _picture, _write_png
 from ..programs import run_program
-from ..results import Result
 from ..traced import TracedScene
 from .camera import Camera, camera_of, name_of
 from .campaign import Campaign, as_json
+from .drawing import Drawer, Drawn
 from .earth import Frame
+from .flow import depth, flow, middles, write_flo, write_pfm
 from .labels import Sight, degrees, label_image, rounded
-from .placement import Bounds, Placed, place_all
-from .shared import Shared, prepare_tree, with_files, write_tree
+from .pairs import LATER, changes, write_change
+from .panoptic import write_segments
+from .rendered import rendered
 from .text import CampaignError
-from .things import ground_scene, item_scene, placed_scene
-from .variables import Draw
 
-_TRUTH = ("tag", "tag_fraction", "instance", "range")
-_OF_SUN = ("incidence", "sun_visibility")
-_KEPT = {"image": ("",), "error": ("_error",), "quality": ("_quality",), "truth": ("_truth",), "classes": ("_tag", "_material")}
-HIGHEST_M = 1e5
-"""Where rays begin that look for what is below an object."""
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """A sample before it is rendered: its draws and texts, the prepared scenes, and its objects."""
-
-    draw: Draw
-    scene: dict[str, Any]
-    simulation: dict[str, Any]
-    backdrop: Path
-    things: Path | None
-    placed: list[Placed]
+_KEPT = {"image": ("",), "error": ("_error",), "quality": ("_quality",), "truth": ("_truth",), "classes": ("_tag", "_material"),
+         "depth": (), "flow": ()}
 
 
 class Maker:
@@ -52,9 +37,7 @@ class Maker:
     def __init__(self, campaign: Campaign, folder: Path, version: str) -> None:
         """version: of the programs."""
         self.campaign, self.folder, self.version = campaign, folder, version
-        self._search = campaign.scene_path.parent.resolve()
-        self._scenes_return = campaign.scenes_return
-        self.shared = Shared(folder / "shared", self._search, version)
+        self.drawer = Drawer(campaign, folder, version)
 
     def path(self, sample: int) -> Path:
         """The folder of a sample; it is there when the sample is finished."""
@@ -80,87 +63,82 @@ class Maker:
             shutil.rmtree(new, ignore_errors=True)
         return target
 
-    def draw(self, sample: int, folder: Path) -> Drawn:
-        """Draws a sample, prepares its scenes, and writes simulation.yaml (and things.h5) into a folder, ready to be rendered."""
-        campaign = self.campaign
-        draw = campaign.draw(sample)
-        scene, simulation = campaign.texts(draw)
-        if self._scenes_return:
-            backdrop = self.shared.prepare(scene)
-        else:  # this sample's alone
-            backdrop = folder / "backdrop.h5"
-            prepare_tree(scene, backdrop, self._search)
-        placed: list[Placed] = []
-        things = None
-        if campaign.groups:
-            with self._opened(backdrop) as opened:
-                placed = place_all(campaign.groups, draw, lambda place: self._bounds(scene, place), lambda on, x, y: _ground(
-                    self.shared.open(self.shared.prepare(ground_scene(scene, on))) if on else opened, x, y))
-        if placed:
-            things = folder / "things.h5"
-            prepare_tree(placed_scene(scene, placed), things, self._search)
-        simulation = with_files(simulation, campaign.simulation_path.parent)
-        if campaign.groups:
-            for sensor in simulation["sensors"]:
-                if sensor.get("kind") not in ("point", "goniometer", "rami"):
-                    wanted = [*(sensor.get("truth") or []), *_TRUTH, *(_OF_SUN if simulation.get("sun") else ())]
-                    sensor["truth"] = list(dict.fromkeys(wanted))
-        if "scenes" not in simulation:
-            simulation.pop("scene", None)
-            simulation = {"scenes": [os.path.abspath(p) for p in (backdrop, things) if p], **simulation}
-        write_tree(simulation, folder / "simulation.yaml")
-        return Drawn(draw, scene, simulation, backdrop, things, placed)
-
     def _make(self, sample: int, new: Path) -> None:
         work = new / "work"
-        drawn = self.draw(sample, work)
-        messages = _render(work, [work, self.folder, self._search])
-        result = Result(work / "out")
-        images = []
-        for name in result.images:
-            dataset = result[name].load()
-            picture = self.campaign.picture
+        drawn = self.drawer.draw(sample, work)
+        images, messages, datasets = self._pictures(drawn, work, new, "")
+        record = {"campaign": self.campaign.digest, "version": self.version, "seed": self.campaign.seed, "sample": sample,
+                  "values": drawn.draw.known, "objects": [asdict(p) for p in drawn.placed]}
+        if self.campaign.pair:
+            (work / "later").mkdir()
+            later = self.drawer.draw_later(drawn, work / "later")
+            more, said, others = self._pictures(later, work / "later", new, LATER)
+            change = changes(drawn.placed, later.placed)
+            for image in [*images, *more]:
+                image["labels"] = [{**label, "change": change[f"{label['class']}.{label['object']}"]} for label in image["labels"]]
+            for name in datasets:
+                if "tag" in datasets[name] and "tag" in others[name]:
+                    write_change(datasets[name], others[name], change, new / f"{name}_change.png")
+            images, messages = [*images, *more], sorted({*messages, *said})
+            record |= {"values_later": later.draw.known, "objects_later": [asdict(p) for p in later.placed]}
+        (new / "sample.json").write_text(as_json({**record, "images": images, "messages": messages}), encoding="utf-8")
+
+    def _pictures(self, drawn: Drawn, work: Path, new: Path, ending: str) -> tuple[list[dict[str, Any]], list[str], dict[str, xr.Dataset]]:
+        """Renders, and puts what is kept of it into `new`; returns the images' records, the messages, and the images. ending: of the images' names."""
+        messages = _render(work, [work, self.folder, self.drawer.search])
+        images, datasets = [], {}
+        for name, dataset in rendered(work / "out"):
+            picture, own = self.campaign.picture, name + ending
             try:
                 pixels = _picture(dataset, picture.bands, picture.stretch, picture.range)
             except ValueError as wrong:
                 raise CampaignError(f"picture of '{name}': {wrong}", file=str(self.campaign.path)) from None
-            _write_png(new / f"{name}.png", pixels)
-            images.append({**rounded(_about(name, dataset)), **self._seen(name, dataset, drawn)})
+            _write_png(new / f"{own}.png", pixels)
+            pair = {"moment": int(bool(ending))} if self.campaign.pair else {}
+            images.append({**rounded(_about(own, dataset)), **pair, **self._seen(name, own, dataset, drawn, new)})
+            datasets[name] = dataset
             endings = [e for part in self.campaign.keep for e in _KEPT[part]]
-            for file in (f"{name}{e}{kind}" for e in endings for kind in (".img", ".img.hdr", ".tif")):
-                if (work / "out" / file).exists():
-                    os.replace(work / "out" / file, new / file)
-        record = {"campaign": self.campaign.digest, "version": self.version, "seed": self.campaign.seed, "sample": sample,
-                  "values": drawn.draw.known, "objects": [asdict(p) for p in drawn.placed], "images": images, "messages": messages}
-        (new / "sample.json").write_text(as_json(record), encoding="utf-8")
+            for e, kind in ((e, kind) for e in endings for kind in (".img", ".img.hdr", ".tif")):
+                if (work / "out" / f"{name}{e}{kind}").exists():
+                    os.replace(work / "out" / f"{name}{e}{kind}", new / f"{own}{e}{kind}")
+        return images, messages, datasets
 
-    def _seen(self, name: str, dataset: xr.Dataset, drawn: Drawn) -> dict[str, Any]:
-        """What an image shows: its labels, and where its corners are on the Earth."""
-        sensor: dict[str, Any] = next((s for s in drawn.simulation["sensors"] if name_of(s) == name), {})
-        camera, frame, settings = camera_of(sensor), _frame(drawn.scene), self.campaign.labels
+    def _seen(self, name: str, own: str, dataset: xr.Dataset, drawn: Drawn, new: Path) -> dict[str, Any]:
+        """What an image shows: its labels, and where its corners are on the Earth. Writes what is made by rays or of the truth into `new`, named by
+        `own`."""
+        camera, frame, settings = _camera(name, drawn), _frame(drawn.scene), self.campaign.labels
         time = camera.time_s if camera else 0.0
-        with self._opened(drawn.backdrop, time) as backdrop:
-            corners = {"corners_lon_lat": _corners(camera, backdrop, frame)} if camera and frame else {}
-            if not drawn.things or "tag" not in dataset:
-                return {**corners, "labels": []}
-            items = {p.place: self._item(drawn.scene, p.place) for p in drawn.placed}
-            with TracedScene(drawn.things, time) as things:
-                sight = Sight(camera, things, backdrop, settings.rays) if camera else None
-                labels = label_image(dataset, drawn.placed, items, self.campaign.classes, sight, frame, settings.min_pixels, settings.segmentation)
-        return {**corners, "labels": labels}
+        with contextlib.ExitStack() as stack:
+            backdrop = stack.enter_context(self.drawer.opened(drawn.backdrop, time))
+            things = stack.enter_context(TracedScene(drawn.things, time)) if drawn.things else None
+            seen: dict[str, Any] = {"corners_lon_lat": _corners(camera, backdrop, frame)} if camera and frame else {}
+            if (number := self.campaign.frames.frame_of(name)) is not None:
+                seen["frame"] = number
+            if camera:
+                seen |= {"camera": rounded(camera.record())} if camera.record() else {}
+                self._by_rays(name, own, camera, drawn, things, backdrop, new)
+            if "panoptic" in self.campaign.formats and "material" in dataset and "tag" in dataset:
+                seen["segments"] = write_segments(dataset, drawn.placed, self.campaign.classes, self.campaign.stuff, new / f"{own}_panoptic.png")
+            if not things or "tag" not in dataset:
+                return {**seen, "labels": []}
+            items = {p.place: drawn.items(p.place) for p in drawn.placed}
+            sight = Sight(camera, things, backdrop, settings.rays) if camera else None
+            labels = label_image(dataset, drawn.placed, items, self.campaign.classes, sight, frame, settings.min_pixels, settings.segmentation)
+        return {**seen, "labels": labels}
 
-    def _opened(self, backdrop: Path, time_s: float = 0.0) -> contextlib.AbstractContextManager[TracedScene]:
-        """A backdrop: a shared one stays open, a sample's own is closed."""
-        return contextlib.nullcontext(self.shared.open(backdrop, time_s)) if self._scenes_return else TracedScene(backdrop, time_s)
+    def _by_rays(self, name: str, own: str, camera: Camera, drawn: Drawn, things: TracedScene | None, backdrop: TracedScene, new: Path) -> None:
+        """Depth, and the flow to the next frame, where they are to be kept."""
+        later = _camera(self.campaign.frames.next_of(name) or "", drawn) if "flow" in self.campaign.keep else None
+        if later or "depth" in self.campaign.keep:
+            places, tag, distance = middles(camera, things, backdrop)
+            if "depth" in self.campaign.keep:
+                write_pfm(new / f"{own}_depth.pfm", depth(camera, places, distance))
+            if later:
+                write_flo(new / f"{own}_flow.flo", flow(camera, later, places, tag, things.tags if things else (), drawn.placed))
 
-    def _item(self, scene: dict[str, Any], place: str) -> TracedScene:
-        return self.shared.open(self.shared.prepare(item_scene(scene, place)))
-
-    def _bounds(self, scene: dict[str, Any], place: str) -> Bounds:
-        low, high = self._item(scene, place).bounds.tolist()
-        if not all(abs(v) < 1e6 for v in (*low, *high)):
-            raise CampaignError(f"'{place}' has no end, and cannot be placed as an object", "something with bounds", str(self.campaign.path))
-        return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+def _camera(name: str, drawn: Drawn) -> Camera | None:
+    """The geometry of the sensor whose image has this name."""
+    return camera_of(next((s for s in drawn.simulation["sensors"] if name_of(s) == name), {}))
 
 
 def _frame(scene: dict[str, Any]) -> Frame | None:
@@ -175,14 +153,6 @@ def _corners(camera: Camera, scene: TracedScene, frame: Frame) -> list[list[str]
     if not hits.hit.all():
         return None
     return [degrees(frame, place) for place in hits.position]
-
-
-def _ground(scene: TracedScene, x: float, y: float) -> float | None:
-    """The height of what is first met from above."""
-    top = float(scene.bounds[1, 2])
-    hits = scene.trace([x, y, top + 1 if abs(top) < HIGHEST_M else HIGHEST_M], [0, 0, -1])
-    # To the micrometre: what is left of the ray's length is no height.
-    return round(float(hits.position[2]), 6) + 0.0 if bool(hits.hit) else None
 
 
 def _render(work: Path, folders: Sequence[Path]) -> list[str]:
@@ -215,8 +185,8 @@ def _about(name: str, dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _median(values: Any) -> float:
-    known = sorted(v for v in values.ravel().tolist() if v == v)
-    return float(known[len(known) // 2]) if known else float("nan")
+    known = values[~np.isnan(values)]
+    return float(np.partition(known, len(known) // 2)[len(known) // 2]) if len(known) else float("nan")
 
 
 def refusal(sample: int, problem: Exception) -> str:

@@ -6,9 +6,9 @@ from typing import Literal
 
 from .text import Node
 
-FORMATS = ("coco", "dota", "yolo", "yolo_obb", "geojson", "webdataset", "stac", "croissant")
-KEPT = ("image", "error", "quality", "truth", "classes")
-"""The radiance, its standard error, flags, all truth, and classes by tag and material."""
+FORMATS = ("coco", "panoptic", "dota", "yolo", "yolo_obb", "kitti", "geojson", "webdataset", "zarr", "cog", "stac", "croissant")
+KEPT = ("image", "error", "quality", "truth", "classes", "depth", "flow")
+"""The radiance, its standard error, flags, all truth, classes by tag and material, and by rays the depth and the flow to the next frame."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,8 @@ class Labels:
     min_pixels: int = 1
     segmentation: Literal["rle", "polygon"] = "rle"
     rays: int = 4
+    stuff: dict[str, tuple[str, ...]] | None = None
+    """Classes of the ground by the materials that show them; None: each material is a class."""
 
 
 def read_picture(node: Node | None) -> Picture:
@@ -52,16 +54,17 @@ def read_picture(node: Node | None) -> Picture:
 
 
 def read_labels(node: Node | None) -> Labels:
-    """`{classes: [NAME, ...], min_pixels, segmentation: rle | polygon, rays}`."""
+    """`{classes: [NAME, ...], min_pixels, segmentation: rle | polygon, rays, stuff: {CLASS: [MATERIAL, ...]}}`."""
     if node is None:
         return Labels()
-    keys = node.map(("classes", "min_pixels", "segmentation", "rays"))
+    keys = node.map(("classes", "min_pixels", "segmentation", "rays", "stuff"))
     classes = tuple(n.text() for n in keys["classes"].list(1)) if "classes" in keys else ()
     if len(set(classes)) != len(classes):
         raise keys["classes"].error("a class stands there twice")
     return Labels(classes, keys["min_pixels"].integer(1, 1 << 30) if "min_pixels" in keys else 1,
                   "polygon" if "segmentation" in keys and keys["segmentation"].one_of(("rle", "polygon")) == "polygon" else "rle",
-                  keys["rays"].integer(1, 16) if "rays" in keys else 4)
+                  keys["rays"].integer(1, 16) if "rays" in keys else 4,
+                  {name: tuple(m.text() for m in n.list(1)) for name, n in keys["stuff"].map().items()} if "stuff" in keys else None)
 
 
 def read_formats(node: Node | None) -> tuple[str, ...]:

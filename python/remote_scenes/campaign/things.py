@@ -2,8 +2,10 @@
 from __future__ import annotations
 
 import copy
+import hashlib
 from typing import Any, Iterable, Mapping, Sequence
 
+from .campaign import as_json
 from .objects import EVERYTHING
 from .placement import Placed
 from .text import leaves
@@ -22,6 +24,11 @@ def ground_scene(scene: Mapping[str, Any], name: str) -> dict[str, Any]:
     return _with_needs(_shapes(scene), {}, {}, [p for p in scene["world"] if isinstance(p, dict) and p.get("place") == name])
 
 
+def backdrop_shapes(scene: Mapping[str, Any]) -> dict[str, Any]:
+    """The whole scene, with shapes alone."""
+    return _shapes(scene)
+
+
 def _shapes(scene: Mapping[str, Any]) -> dict[str, Any]:
     """What something is made of does not matter to its shape, except for holes, so that samples with other materials share it."""
     materials = {name: m if isinstance(m, dict) and ("map" in m or "maps" in m) else {"model": "lambert", "reflectance": 0.5}
@@ -30,18 +37,44 @@ def _shapes(scene: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def placed_scene(scene: Mapping[str, Any], placed: Sequence[Placed]) -> dict[str, Any]:
-    """All objects of a sample, each with a tag of its own."""
+    """All objects of a sample alone, each with a tag of its own."""
+    objects, groups, materials, world = _entries(scene, placed)
+    return _with_needs({**scene, "materials": materials}, objects, groups, world)
+
+
+def whole_scene(scene: Mapping[str, Any], placed: Sequence[Placed]) -> dict[str, Any]:
+    """The scene with all objects of a sample, each with a tag of its own."""
+    objects, groups, materials, world = _entries(scene, placed)
+    parts = {"materials": materials, "objects": {**scene.get("objects", {}), **objects}, "groups": {**scene.get("groups", {}), **groups}}
+    return {**scene, **{k: v for k, v in parts.items() if v}, "world": [*scene["world"], *world]}
+
+
+def _entries(scene: Mapping[str, Any], placed: Sequence[Placed]) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any], list[Any]]:
+    """New objects and groups, all materials, and placements of the world."""
     objects: dict[str, Any] = {}
     groups: dict[str, Any] = {}
+    own: dict[str, Any] = {}
     world = []
     for one in placed:
-        place = _variant(scene, one.place, {k: v for k, v in one.materials.items() if k != EVERYTHING}, objects, groups)
-        entry: dict[str, Any] = {"place": place, "tag": one.tag, "scale": one.scale, "rotate": {"heading_deg": one.heading_deg},
-                                 "translate": list(one.position_m)}
-        if EVERYTHING in one.materials:
-            entry["material"] = one.materials[EVERYTHING]
+        materials = {key: _named(value, key, own) for key, value in one.materials.items()}
+        place = _variant(scene, one.place, {k: v for k, v in materials.items() if k != EVERYTHING}, objects, groups)
+        where: dict[str, Any] = {"rotate": {"heading_deg": one.heading_deg}, "translate": list(one.position_m)}
+        if one.speed_m_s:
+            where = {"motion": {"kind": "straight", "position_m": list(one.position_m), "heading_deg": one.heading_deg, "speed_m_s": one.speed_m_s}}
+        entry: dict[str, Any] = {"place": place, "tag": one.tag, "scale": one.scale, **where}
+        if EVERYTHING in materials:
+            entry["material"] = materials[EVERYTHING]
         world.append(entry)
-    return _with_needs(scene, objects, groups, world)
+    return objects, groups, {**scene.get("materials", {}), **own}, world
+
+
+def _named(value: str | dict[str, Any], key: str, own: dict[str, Any]) -> str:
+    """The name of a material; one of an object alone gets a name by what it is."""
+    if isinstance(value, str):
+        return value
+    name = f"{'any' if key == EVERYTHING else key} {hashlib.sha256(as_json(value).encode()).hexdigest()[:12]}"
+    own[name] = value
+    return name
 
 
 def _variant(scene: Mapping[str, Any], name: str, materials: Mapping[str, str], objects: dict[str, Any], groups: dict[str, Any]) -> str:

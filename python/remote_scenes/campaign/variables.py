@@ -1,7 +1,7 @@
 """All variables of a campaign: in an order in which each comes after those that it refers to, and their values for a sample."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Mapping
 
 from .distributions import Rule, number_of, read_rule
@@ -24,10 +24,11 @@ class Variables:
         rule = self.rules[name]
         return rule.continuous or any(self.continuous(other) for other, _ in rule.names)
 
-    def values(self, seed: int, sample: int, samples: int, forced: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    def values(self, seed: int, sample: int, samples: int, forced: Mapping[str, Any] | None = None,
+               again: frozenset[str] | None = None) -> dict[str, Any]:
         """The value of every variable, in the order of the text. samples: of the whole campaign (a Latin hypercube needs it); forced: values in
-        place of draws, which others see that refer to them."""
-        drawn = Draw(self, seed, sample, samples)
+        place of draws, which others see that refer to them; again: those that are drawn by other numbers, for the second picture of a pair."""
+        drawn = Draw(self, seed, sample, samples, again=again)
         given = forced or {}
         for name in self.ordered:
             drawn.known[name] = given[name] if name in given else self.rules[name].value(drawn)
@@ -37,16 +38,19 @@ class Variables:
 class Draw:
     """One sample while it is drawn (distributions.Context)."""
 
-    def __init__(self, variables: Variables, seed: int, sample: int, samples: int, known: dict[str, Any] | None = None) -> None:
+    def __init__(self, variables: Variables, seed: int, sample: int, samples: int, known: dict[str, Any] | None = None,
+                 again: frozenset[str] | None = None) -> None:
         self.variables, self.seed, self.sample, self.samples = variables, seed, sample, samples
+        self.again, self.later = again or frozenset(), again is not None
         self.known: dict[str, Any] = dict(known or {})
 
     def number(self, key: str) -> float:
         """Of a variable, or of any other name."""
         rule = self.variables.rules.get(key)
-        if rule is None:
-            return unit(self.seed, self.sample, key)
-        return number_of(rule, self.seed, self.sample, self.samples, self.variables.dimensions.get(key, 0))
+        if rule is None:  # a part of a variable: its name, a blank or a dot, and which part
+            return unit(self.seed, self.sample, f"{key} again" if self.again and any(key.startswith((f"{a} ", f"{a}.")) for a in self.again) else key)
+        named = replace(rule, key=f"{key} again") if key in self.again else rule
+        return number_of(named, self.seed, self.sample, self.samples, self.variables.dimensions.get(key, 0))
 
     def reference(self, name: str, at: Node) -> Any:
         """The value of a variable that was drawn before."""
@@ -59,9 +63,9 @@ class Draw:
         return self.sample // self.variables.axes[axis][1] % length
 
 
-def read_variables(node: Node | None) -> Variables:
-    """The map of variables. CampaignError: a name that is not there, a circle, axes of other lengths under one name."""
-    rules = {name: read_rule(inner, name) for name, inner in (node.map().items() if node else ())}
+def read_variables(node: Node | None, curves: Mapping[str, Any] | None = None) -> Variables:
+    """The map of variables; curves: those of the scene's text. CampaignError: a name that is not there, a circle, axes of other lengths under one name."""
+    rules = {name: read_rule(inner, name, curves) for name, inner in (node.map().items() if node else ())}
     axes: dict[str, tuple[int, int]] = {}
     stride = 1
     for rule in rules.values():

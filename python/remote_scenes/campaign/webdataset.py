@@ -8,8 +8,8 @@ import tarfile
 from pathlib import Path
 
 from .campaign import Campaign
-from .engine import write_whole
-from .exports import Image, images
+from .exports import Image, images, own_files
+from .whole_files import write_whole
 
 SHARD_BYTES = 256 << 20
 
@@ -42,15 +42,11 @@ def write_webdataset(campaign: Campaign, folder: Path, shard_bytes: int = SHARD_
 
 
 def _add(tar: tarfile.TarFile, folder: Path, image: Image) -> int:
-    name, size = str(image.about["name"]), 0
+    size = 0
     record = json.dumps({"key": image.key, "sample": image.sample, "values": image.values, **image.about}, sort_keys=True).encode()
     parts = [(f"{image.key}.json", record)]
-    for file in sorted((folder / image.file).parent.iterdir()):
-        # The image's own files: NAME.ending and NAME_part.ending, but not those of an image whose name begins alike.
-        stem, _, ending = file.name.partition(".")
-        if stem == name or stem in {f"{name}_{part}" for part in ("error", "quality", "truth", "tag", "material")}:
-            part = stem[len(name):].lstrip("_")
-            parts.append((f"{image.key}.{part + '.' if part else ''}{ending}", file.read_bytes()))
+    for part, file in own_files(folder, image):
+        parts.append((f"{image.key}.{part + '.' if part else ''}{file.name.partition('.')[2]}", file.read_bytes()))
     for path, content in sorted(parts):
         about = tarfile.TarInfo(path)
         about.size, about.mode = len(content), 0o644

@@ -5,13 +5,16 @@ import unittest
 from collections import Counter
 from statistics import NormalDist
 
+import numpy as np
 from kit import Case, chi_square, chi_square_bound
 from remote_scenes.campaign import draws
 from remote_scenes.campaign.regions import Polygons, Roads, Slots
 from remote_scenes.campaign.distributions import read_rule
 from remote_scenes.campaign.objects import Group, Item
+from remote_scenes.campaign.pairs import Pair, place_later
 from remote_scenes.campaign.placement import place_all
 from remote_scenes.campaign.text import CampaignError, Node, read_text
+from remote_scenes.campaign.things import placed_scene
 from remote_scenes.campaign.variables import Draw, Variables, read_variables
 
 N = 10_000
@@ -86,6 +89,10 @@ class Distributions(Case):
         self.assertEqual(values[:4], [[1, "u", "U"], [2, "u", "U"], [3, "u", "U"], [1, "v", "V"]])
         self.assertEqual(set(Counter(map(tuple, values)).values()), {2})
         self.assertEqual(len(set(map(tuple, values))), 6)
+        # Of 10,000 samples as many in each cell of the factorial as can be, which random draws (the control) do not give.
+        for drawn, is_even in ((text, True), ("a: {choice: [1, 2, 3]}\nb: {choice: [u, v]}\nall: [$a, $b]", False)):
+            cells = Counter(map(tuple, self.drawn(drawn, "all")))
+            self.assertEqual((len(cells), chi_square(cells.values(), [N / 6] * 6) < 0.01), (6, is_even))
 
     def test_conditional(self):
         text = "k: {choice: [low, high], weights: [1, 3]}\nx: {by: k, cases: {low: {uniform: [0, 1]}, high: {uniform: [$edge, 3]}}}\nedge: 2\nboth: [$k, $x]"
@@ -94,6 +101,44 @@ class Distributions(Case):
             mine = [x - low for k, x in values if k == case]
             self.assertLess(chi_square([len(mine), N - len(mine)], [N * share, N * (1 - share)]), chi_square_bound(2))
             self.assertLess(self.held(mine, lambda v: v), chi_square_bound(CELLS))
+
+    def test_mixtures_of_spectra(self):
+        """Shares of a Dirichlet distribution: each has a beta distribution, of which these have closed forms."""
+        kinds = {"mixture: [0, 1]": lambda v: v,  # beta(1, 1)
+                 "mixture: [0, 1], shares: [3, 1], concentration: 4": lambda v: 1 - (1 - v) ** 3,  # beta(1, 3)
+                 "mixture: [0, 1], concentration: 1": lambda v: 2 / math.pi * math.asin(v ** 0.5),  # beta(1/2, 1/2)
+                 "mixture: [0, 0, 1]": lambda v: 1 - (1 - v) ** 2}  # beta(1, 2)
+        for kind, cumulative in kinds.items():
+            values = self.drawn(f"x: {{{kind}}}")
+            self.assertLess(self.held(values, cumulative), chi_square_bound(CELLS), kind)
+            self.assertGreater(self.held(values, lambda v: cumulative(v) ** 1.1), chi_square_bound(CELLS), kind)
+        # Of curves: all have the same share everywhere, at all wavelengths that any has within those that all have.
+        (self.folder / "wet.csv").write_text("wavelength nm, wet, dry\n400, 0.1, 0.2\n600, 0.3, 0.6\n")
+        curves = "[{wavelength_um: [0.45, 0.5, 0.7], value: [0.9, 0.8, 0.4]}, {file: wet.csv, column: 2}, 0.5]"
+        for drawn in self.drawn(f"x: {{mixture: {curves}, shares: [1, 2, 1], outside: hold}}", count=50):
+            self.assertEqual((drawn["wavelength_um"], drawn["outside"]), ([0.45, 0.5, 0.6], "hold"))
+            ends = [[0.9, 0.3, 0.5], [0.8, 0.4, 0.5], [0.6, 0.6, 0.5]]
+            shares = np.linalg.solve(np.array([*ends[:2], [1, 1, 1]]), [*drawn["value"][:2], 1])
+            self.assertTrue((shares > -1e-5).all())
+            self.assertAlmostEqual(drawn["value"][2], shares @ ends[2], places=5)
+
+    def test_variability_within_a_class(self):
+        """Each wavelength is normal with the mean and the variance of the spectra, and so is a difference of two."""
+        spectra = [[0.31, 0.52, 0.40], [0.35, 0.58, 0.47], [0.28, 0.47, 0.39], [0.33, 0.56, 0.41]]
+        (self.folder / "grass.csv").write_text("um a b c d\n" + "".join(
+            f"{w} " + " ".join(str(s[i]) for s in spectra) + "\n" for i, w in enumerate((0.5, 0.8, 1.6))))
+        values = np.array([v["value"] for v in self.drawn("x: {variability: grass.csv}")])
+        for weights in ([1, 0, 0], [0, 1, 0], [0, -1, 1], [1, 1, 1]):
+            truth = np.array(spectra) @ weights
+            law = NormalDist(truth.mean(), truth.std(ddof=1))
+            self.assertLess(self.held(values @ weights, law.cdf), chi_square_bound(CELLS), weights)
+            wide = NormalDist(truth.mean(), 1.1 * truth.std(ddof=1))
+            self.assertGreater(self.held(values @ weights, wide.cdf), chi_square_bound(CELLS), weights)
+        # The control: as if the wavelengths were independent.
+        apart = NormalDist((np.array(spectra) @ [0, -1, 1]).mean(), np.hypot(*np.array(spectra)[:, 1:].std(axis=0, ddof=1)))
+        self.assertGreater(self.held(values @ [0, -1, 1], apart.cdf), chi_square_bound(CELLS))
+        cut = [v["value"] for v in self.drawn("x: {variability: grass.csv, deviation: 9, within: [0.2, 0.5]}", count=200)]
+        self.assertEqual((np.min(cut), np.max(cut)), (0.2, 0.5))
 
     def test_a_new_variable_changes_no_other(self):
         before = self.drawn("x: {uniform: [0, 1]}\ny: {normal: [0, 1], draw: latin}\nb: [$x, $y]", "b", 50)
@@ -140,10 +185,42 @@ class Places(unittest.TestCase):
         self.assertEqual(sorted(slots.place(i, lambda name: 0.3)[0] for i in range(12)), list(range(12)))
         self.assertIsNone(slots.place(12, lambda name: 0.3))
 
-    def placed(self, count, places, spacing=0.0):
+    def test_every_object_draws_a_material_of_its_own(self):
+        rule = read_rule(Node({"material": Node({"model": Node("lambert", "c", 1, 1), "reflectance": Node({"uniform": Node(
+            [Node(0.2, "c", 1, 1), Node(0.4, "c", 1, 1)], "c", 1, 1)}, "c", 1, 1)}, "c", 1, 1)}, "c", 1, 1), "materials.paint")
+        self.assertEqual(rule.ends, ({"model": "lambert", "reflectance": 0.2}, {"model": "lambert", "reflectance": 0.2}, {"model": "lambert", "reflectance": 0.4}))
+        placed = self.placed(4, tuple((9.0 * i, 0.0, 0.0) for i in range(9)), materials={"paint": rule})
+        drawn = [p.materials["paint"]["reflectance"] for p in placed]
+        self.assertEqual(len(set(drawn)), 4)
+        self.assertTrue(all(0.2 < v < 0.4 for v in drawn))
+        scene = {"scene": 1, "materials": {"paint": {"model": "lambert", "reflectance": 0.5}}, "objects": {"car": {"box": {}, "material": "paint"}}, "world": []}
+        whole = placed_scene(scene, placed)
+        self.assertEqual(sorted(m["reflectance"] for m in whole["materials"].values()), sorted(drawn))
+        self.assertEqual([whole["materials"][whole["objects"][w["place"]]["material"]]["reflectance"] for w in whole["world"]], drawn)
+
+    def test_pairs_leave_and_arrive_as_often_as_is_said(self):
+        slots = tuple((9.0 * i, 0.0, 0.0) for i in range(40))
+        group = self.group(20, slots)
+        left = came = 0
+        for sample in range(100):
+            draw = Draw(Variables({}, (), {}, {}), 1, sample, 100)
+            bounds, ground = (lambda place: ((-1, -2, 0), (1, 2, 1))), (lambda on, x, y: 0.0)
+            first = place_all([group], draw, bounds, ground)
+            later = place_later([group], draw, bounds, ground, first, Pair(frozenset(), 0.3, 0.15))
+            stay = {p.tag for p in first} & {p.tag for p in later}
+            left, came = left + 20 - len(stay), came + len(later) - len(stay)
+            self.assertEqual(len({p.position_m for p in later}), len(later))
+        for count, share in ((left, 0.3), (came, 0.15)):
+            self.assertLess(chi_square([count, 2000 - count], [2000 * share, 2000 * (1 - share)]), chi_square_bound(2))
+            self.assertGreater(chi_square([count, 2000 - count], [2000 * share * 1.4, 2000 * (1 - share * 1.4)]), chi_square_bound(2))
+
+    def group(self, count, places, spacing=0.0, materials={}):
         number = lambda value: read_rule(Node(value, "c.yaml", 3, 1), "n")
-        item = Item("car", "car", "car", 1, {}, None, Node({}, "c.yaml", 4, 1))
-        group = Group("g", (item,), number(count), Slots(places), None, spacing, True, number(0), None, 9, Node({}, "c.yaml", 5, 1))
+        item = Item("car", "car", "car", 1, materials, None, Node({}, "c.yaml", 4, 1))
+        return Group("g", (item,), number(count), Slots(places), None, spacing, True, number(0), None, 9, Node({}, "c.yaml", 5, 1))
+
+    def placed(self, count, places, spacing=0.0, materials={}):
+        group = self.group(count, places, spacing, materials)
         draw = Draw(Variables({}, (), {}, {}), 1, 0, 1)
         return place_all([group], draw, lambda place: ((-1, -2, 0), (1, 2, 1)), lambda on, x, y: 0.0)
 

@@ -1,5 +1,6 @@
 """The engine: the same bytes with any number of workers, after kill -9 and by shards; refusals that leave nothing half-written; and what is written
 when all samples are there, read by decoders of the tests' own."""
+import gzip
 import json
 import os
 import resource
@@ -9,6 +10,7 @@ import sys
 import tarfile
 import time
 import unittest
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +20,13 @@ from remote_scenes.campaign import CampaignError, forecast, read_campaign, run
 from remote_scenes.campaign.engine import prepare_folder, run_samples
 from remote_scenes.campaign.exports import images
 from remote_scenes.campaign.label_files import write_coco
+from remote_scenes.campaign.launch import RANKS, shard_of_rank
 from remote_scenes.campaign.sheet import read_png, write_sheet
 from remote_scenes.campaign.slurm import slurm_script
+from remote_scenes.campaign.zarr_store import write_zarr
 
 SAMPLES = 4
-FORMATS = "formats: [coco, dota, yolo, yolo_obb, geojson, webdataset, stac, croissant]\n"
+FORMATS = "formats: [coco, panoptic, dota, yolo, yolo_obb, geojson, webdataset, zarr, stac, croissant]\n"
 
 
 def command(path, folder, *more):
@@ -61,10 +65,11 @@ class Engine(Case):
             process.wait()
         self.assertIn("a worker ended with -9", (self.folder / "log").read_text())
         time.sleep(0.1)
-        # What is left goes on in shards, by other numbers of workers.
+        # What is left goes on in shards, by other numbers of workers, and by an executor.
         self.assertLess(count(second), SAMPLES)
         run(path, second, workers=0, shard=(2, 2))
-        last = run(path, second, workers=0)
+        with ProcessPoolExecutor(1) as executor:
+            last = run(path, second, executor=executor)
         self.assertTrue(last.complete)
         self.assertEqual(hashes(first), hashes(second))
         self.assertFalse([p for p in (second / "samples").iterdir() if p.name.startswith(".")])
@@ -113,6 +118,7 @@ class Engine(Case):
             np.testing.assert_allclose(np.array(t[1:], float).reshape(4, 2) * 32, np.clip(label["obb"], 0, 32), atol=1e-4)
             self.on_the_map(feature, label)
         self.shards(folder, labels)
+        self.store(folder)
         self.cards(folder)
 
     def on_the_map(self, feature, label):
@@ -137,9 +143,29 @@ class Engine(Case):
                     key, _, ending = member.name.partition(".")
                     found.setdefault(key, {})[ending] = tar.extractfile(member).read()
         self.assertEqual(list(found), [f"{i:06d}_chip" for i in range(SAMPLES)])
-        self.assertEqual(set(found["000003_chip"]), {"png", "json", "img", "img.hdr", "error.img", "error.img.hdr", "quality.img", "quality.img.hdr"})
+        self.assertEqual(set(found["000003_chip"]), {"png", "json", "img", "img.hdr", "error.img", "error.img.hdr", "quality.img", "quality.img.hdr",
+                                                       "panoptic.png"})
         self.assertEqual(found["000003_chip"]["img"], (folder / "samples/000003/chip.img").read_bytes())
         self.assertEqual([a for i in range(SAMPLES) for a in json.loads(found[f"{i:06d}_chip"]["json"])["labels"]], [a for _, a in labels])
+
+    def store(self, folder):
+        """The arrays by their own description, a chunk an image."""
+        store = folder / "dataset.zarr"
+        for product, kind, bands in (("radiance", "<f4", 1), ("standard_error", "<f4", 1), ("quality", "u1", 1)):
+            about = json.loads((store / "chip" / product / "zarr.json").read_text())
+            self.assertEqual((about["zarr_format"], about["shape"], about["chunk_grid"]["configuration"]["chunk_shape"]), (3, [SAMPLES, bands, 32, 32], [1, bands, 32, 32]))
+            self.assertEqual([c["name"] for c in about["codecs"]], ["bytes", "gzip"])
+            ending = {"radiance": "", "standard_error": "_error", "quality": "_quality"}[product]
+            for i in range(SAMPLES):
+                self.assertEqual(gzip.decompress((store / f"chip/{product}/c/{i}/0/0/0").read_bytes()), (folder / f"samples/{i:06d}/chip{ending}.img").read_bytes())
+        try:
+            import zarr
+        except ImportError:
+            return
+        group = zarr.open_group(store, mode="r")
+        self.assertEqual(group["chip/sample"][:].tolist(), list(range(SAMPLES)))
+        self.assertEqual(group["chip/radiance"][3].tobytes(), (folder / "samples/000003/chip.img").read_bytes())
+        self.assertEqual(group["chip/radiance"].metadata.dimension_names, ("sample", "band", "y", "x"))
 
     def cards(self, folder):
         collection = json.loads((folder / "stac/collection.json").read_text())
@@ -169,6 +195,16 @@ class Engine(Case):
             pass
         else:
             self.assertEqual(len(mlcroissant.Dataset(str(folder / "croissant.json")).metadata.issues.errors), 0)
+        try:
+            from pycocotools import mask
+            from pycocotools.coco import COCO
+        except ImportError:
+            pass
+        else:
+            found = COCO(folder / "annotations.json")
+            for one in found.loadAnns(found.getAnnIds()):
+                runs = mask.frPyObjects(one["segmentation"], *one["segmentation"]["size"])
+                self.assertEqual((int(mask.area(runs)), mask.toBbox(runs).tolist()), (one["area"], one["bbox"]))
 
     def test_lists_are_written_whole(self):
         """A list that stands there is not touched when writing the new one fails."""
@@ -180,8 +216,9 @@ class Engine(Case):
         old = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         try:
             resource.setrlimit(resource.RLIMIT_FSIZE, (50, limit[1]))
-            with self.assertRaises(OSError):
-                write_coco(read_campaign(path), folder)
+            for write in (write_coco, write_zarr):
+                with self.assertRaises(OSError):
+                    write(read_campaign(path), folder)
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, limit)
             signal.signal(signal.SIGXFSZ, old)
@@ -266,6 +303,14 @@ class Refusals(Case):
         self.assertNotIn("Traceback", done.stderr)
         self.assertEqual([p.name for p in self.folder.glob("out/samples/*")] + [p.name for p in self.folder.glob("out/shared/*")], [])
         self.assertTrue(run(path, self.folder / "out", workers=0).complete)
+
+    def test_ranks(self):
+        """Of each launcher the shard that a rank makes; one message where there is none."""
+        for rank, size in RANKS:
+            self.assertEqual([shard_of_rank({rank: str(i), size: "3"}) for i in range(3)], [(1, 3), (2, 3), (3, 3)])
+        for wrong in ({}, {"PMI_RANK": "1"}, {"PMI_RANK": "3", "PMI_SIZE": "3"}, {"PMI_RANK": "x", "PMI_SIZE": "3"}):
+            with self.assertRaises(CampaignError):
+                shard_of_rank(wrong)
 
     def test_slurm(self):
         """The script makes every shard once; `sbatch` is not there, so that a shell takes its place."""

@@ -99,6 +99,10 @@ class Boxes:
 
     def trace(self, origin, direction, only=None):
         """The owner of what each ray meets first, or -1."""
+        return self.first(origin, direction, only)[0]
+
+    def first(self, origin, direction, only=None):
+        """The owner, and how many lengths of its direction a ray goes there."""
         best, owner = np.full(len(origin), np.inf), np.full(len(origin), -1)
         for who, low, high, position, heading, scale in self.boxes:
             if only is not None and who != only:
@@ -112,4 +116,4 @@ class Boxes:
             near, far = np.nanmax(np.minimum(a, b), axis=1), np.nanmin(np.maximum(a, b), axis=1)
             met = (near <= far) & (far > 0) & (near < best)
             best[met], owner[met] = near[met], who
-        return owner
+        return owner, best
