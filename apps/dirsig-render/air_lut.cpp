@@ -100,12 +100,13 @@ std::vector<LutState> all_states(const AirSpec& air, const LutTable& table, cons
   return states;
 }
 
-// The state in the middle, with bins half as wide, twice the g-points and half as many streams again.
+// The state in the middle, with bins half as wide, twice the g-points, half as many streams again and all layers apart.
 LutValues errors_of(const AirSpec& air, const LutTable& table, const LutFineness& fineness,
                     const std::vector<LutState>& states) {
   const size_t middle = table.states() / 2;
   LutFineness finer = fineness;
   finer.points = 2 * fineness.points;
+  finer.thin = 0;
   finer.widest_um = 0.5 * widest_bin(table, fineness);
   finer.streams = std::min(64, (fineness.streams + fineness.streams / 2 + 1) / 2 * 2);
   return lut_difference(states[middle], lut_state(air, table, middle, finer));
