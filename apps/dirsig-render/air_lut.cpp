@@ -168,12 +168,13 @@ int run_air_lut(const RenderOptions& o, const Simulation& sim) {
   }
   if (request.check) report_errors(table, result.errors);
   report_limits(air, table);
-  write_lut_netcdf(in_folder(o.output, "air_lut.nc"), table, result,
-                   {{"Conventions", "CF-1.8"},
-                    {"title", "quantities for atmospheric correction"},
-                    {"source", version_text()},
-                    {"simulation", sim.path},
-                    {"grid", grid}});
+  const LutNotes notes{{"Conventions", "CF-1.8"},
+                       {"title", "quantities for atmospheric correction"},
+                       {"source", version_text()},
+                       {"simulation", sim.path},
+                       {"grid", grid}};
+  write_lut_netcdf(in_folder(o.output, "air_lut.nc"), table, result, notes);
+  if (request.zarr) write_lut_zarr(in_folder(o.output, "air_lut.zarr"), table, result, notes);
   write_lut_csv(in_folder(o.output, "air_lut.csv"), table, result);
   kept.remove();
   return 0;
