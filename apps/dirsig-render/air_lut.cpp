@@ -100,12 +100,13 @@ std::vector<LutState> all_states(const AirSpec& air, const LutTable& table, cons
   return states;
 }
 
-// The state in the middle, with bins half as wide, twice the g-points and half as many streams again.
+// The state in the middle, with bins half as wide, twice the g-points, half as many streams again and all layers apart.
 LutValues errors_of(const AirSpec& air, const LutTable& table, const LutFineness& fineness,
                     const std::vector<LutState>& states) {
   const size_t middle = table.states() / 2;
   LutFineness finer = fineness;
   finer.points = 2 * fineness.points;
+  finer.thin = 0;
   finer.widest_um = 0.5 * widest_bin(table, fineness);
   finer.streams = std::min(64, (fineness.streams + fineness.streams / 2 + 1) / 2 * 2);
   return lut_difference(states[middle], lut_state(air, table, middle, finer));
@@ -167,12 +168,13 @@ int run_air_lut(const RenderOptions& o, const Simulation& sim) {
   }
   if (request.check) report_errors(table, result.errors);
   report_limits(air, table);
-  write_lut_netcdf(in_folder(o.output, "air_lut.nc"), table, result,
-                   {{"Conventions", "CF-1.8"},
-                    {"title", "quantities for atmospheric correction"},
-                    {"source", version_text()},
-                    {"simulation", sim.path},
-                    {"grid", grid}});
+  const LutNotes notes{{"Conventions", "CF-1.8"},
+                       {"title", "quantities for atmospheric correction"},
+                       {"source", version_text()},
+                       {"simulation", sim.path},
+                       {"grid", grid}};
+  write_lut_netcdf(in_folder(o.output, "air_lut.nc"), table, result, notes);
+  if (request.zarr) write_lut_zarr(in_folder(o.output, "air_lut.zarr"), table, result, notes);
   write_lut_csv(in_folder(o.output, "air_lut.csv"), table, result);
   kept.remove();
   return 0;

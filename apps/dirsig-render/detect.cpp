@@ -4,6 +4,7 @@
 #include "base/run_lock.h"
 #include "detect_input.h"
 #include "detect_job.h"
+#include "formats/preset/preset.h"
 
 namespace suite {
 
@@ -29,7 +30,7 @@ void check_detect_usage(const Cli& cli, const RenderOptions& o) {
 
 int run_detect(const Cli& cli, const RenderOptions& o) {
   check_detect_usage(cli, o);
-  const Params text = Params::parse_file(o.simulation, o.settings);
+  const Params text = parse_simulation(o.simulation, o.settings);
   DetectionSpec spec = read_detection(text, text, pulse_of_file);
   if (o.seed >= 0) spec.seed = static_cast<uint64_t>(o.seed);
   const ResponseSource source = open_response(o.detect);

@@ -90,7 +90,9 @@ void declare_questions(Cli& cli, RenderOptions& o) {
              "print one of them as a text for `sensors:`, with the sources of its numbers, and stop", "NAME");
   cli.flag("--list-presets", o.list_presets, "print the sensors that are known by public numbers and stop");
   cli.option("--preset", o.preset,
-             "print one of them as a text for `sensors:`, with the sources of its numbers, and stop", "NAME");
+             "print one of them as a text for `sensors:`, with the sources of its numbers, and stop; a sensor may name "
+             "it, too: `{kind: platform, preset: NAME, ...}`, whose own keys take the place of the preset's",
+             "NAME");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
   cli.flag("--list-diagnostics", o.list_diagnostics, "print the code, condition and cure of every diagnostic and stop");

@@ -21,6 +21,7 @@
 #include "dry_checks.h"
 #include "dry_run.h"
 #include "flags_report.h"
+#include "formats/preset/preset.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
@@ -28,7 +29,6 @@
 #include "heat.h"
 #include "helios_survey.h"
 #include "lidar.h"
-#include "lidar_presets.h"
 #include "light/light_rows.h"
 #include "load.h"
 #include "log.h"
@@ -47,7 +47,6 @@
 #include "sensor/deflectors/deflector.h"
 #include "sensor/detectors/detectors.h"
 #include "sensor/plugin.h"
-#include "sensor_presets.h"
 #include "start.h"
 #include "stokes_checks.h"
 #include "study.h"
@@ -167,9 +166,9 @@ std::optional<int> answer(const Cli& cli, const RenderOptions& o) {
   if (o.list_image_detectors) return print(array_detectors().list());
   if (o.list_deflectors) return print(deflectors().list());
   if (o.list_presets) return print(list_presets());
-  if (!o.preset.empty()) return print(sensor_preset(o.preset));
+  if (!o.preset.empty()) return print(preset_text(o.preset));
   if (o.lidar_presets) return print(list_lidar_presets());
-  if (!o.lidar_preset.empty()) return print(lidar_preset(o.lidar_preset));
+  if (!o.lidar_preset.empty()) return print(preset_text(o.lidar_preset));
   if (o.list_truth) return print(truth_rows().list());
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());

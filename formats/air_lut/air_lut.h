@@ -1,4 +1,4 @@
-// Grids of states of the air as text, and tables over them as netCDF and CSV. FORMAT.md.
+// Grids of states of the air as text, and tables over them as netCDF, Zarr and CSV. FORMAT.md.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,6 +14,7 @@ struct LutRequest {
   std::string sensor;  // of the simulation; empty: its only one
   LutFineness fineness;
   bool check = true;  // one state is solved more finely, and the difference kept
+  bool zarr = false;  // the table as Zarr as well
   std::array<Where, kLutAxes> where;
   Where text;  // as a whole
 };
@@ -38,9 +39,11 @@ struct LutResult {
   std::vector<LutState> states;
   LutValues errors;
 };
-// notes: attributes of the file, such as history. Error: cannot be written.
-void write_lut_netcdf(const std::string& path, const LutTable& table, const LutResult& result,
-                      const std::vector<std::pair<std::string, std::string>>& notes);
+using LutNotes = std::vector<std::pair<std::string, std::string>>;  // attributes of the file, such as history
+// Error: cannot be written.
+void write_lut_netcdf(const std::string& path, const LutTable& table, const LutResult& result, const LutNotes& notes);
+// The same as a folder of Zarr, version 2.
+void write_lut_zarr(const std::string& path, const LutTable& table, const LutResult& result, const LutNotes& notes);
 // A row for each state, view and band, under a header with units.
 void write_lut_csv(const std::string& path, const LutTable& table, const LutResult& result);
 

@@ -38,6 +38,7 @@ LutRequest request_of(const Params& root) {
   request.fineness.streams = static_cast<int>(root.integer("streams", 4, 64, 16));
   if (request.fineness.streams % 2) throw root.at("streams").error("streams are even", "4, 6, 8, ... 64");
   request.check = root.boolean("check", true);
+  request.zarr = root.boolean("zarr", false);
   root.reject_unread();
   return request;
 }

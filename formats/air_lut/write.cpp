@@ -2,6 +2,7 @@
 
 #include "base/files.h"
 #include "formats/air_lut/air_lut.h"
+#include "formats/air_lut/zarr.h"
 #include "formats/hdf5/netcdf.h"
 #include "math/vec.h"
 
@@ -52,7 +53,8 @@ std::vector<double> by_band(const LutTable& table, const LutResult& result, size
   return values;
 }
 
-void put_angles(h5::NetcdfWriter& file, const LutTable& table) {
+template <class Writer>
+void put_angles(Writer& file, const LutTable& table) {
   const std::vector<double>& suns = table.axes[static_cast<size_t>(LutAxisOf::sun_zenith)].values;
   if (suns.size() != 1) return;
   const double zenith = suns[0], cosine = std::cos(zenith * kDegree);
@@ -60,12 +62,8 @@ void put_angles(h5::NetcdfWriter& file, const LutTable& table) {
   file.variable("solzen", {}, {&zenith, 1}, {{"units", "degree"}, {"long_name", "zenith angle of the sun"}});
 }
 
-}  // namespace
-
-void write_lut_netcdf(const std::string& path, const LutTable& table, const LutResult& result,
-                      const std::vector<std::pair<std::string, std::string>>& notes) {
-  AtomicFile to(path);
-  h5::NetcdfWriter file(to.temporary(), path);
+template <class Writer>
+void put_table(Writer& file, const LutTable& table, const LutResult& result, const LutNotes& notes) {
   file.dimension("wl", of_bands(table, &Band::center_um), {{"units", "nm"}, {"long_name", "centre of the band"}});
   std::vector<std::string> dimensions{"wl"};
   for (const size_t a : running(table)) {
@@ -86,7 +84,7 @@ void write_lut_netcdf(const std::string& path, const LutTable& table, const LutR
         {{"units", kTexts[k].unit},
          {"long_name", "largest difference of one state from its solution with finer bins and more streams"}});
   file.attribute("RT_mode", std::string("transm"));
-  file.attribute("dayofyear", 93);  // 1 AU: what ISOFIT takes as its reference
+  file.attribute("dayofyear", 93LL);  // 1 AU: what ISOFIT takes as its reference
   file.attribute("ISOFIT status", std::string("success"));
   for (size_t a = 0; a < kLutAxes; ++a)
     if (table.axes[a].values.size() == 1)
@@ -94,7 +92,20 @@ void write_lut_netcdf(const std::string& path, const LutTable& table, const LutR
                      strf("%.10g %s", table.axes[a].values[0], table.axes[a].unit));
   for (const auto& [name, text] : notes) file.attribute(name, text);
   file.close();
+}
+
+}  // namespace
+
+void write_lut_netcdf(const std::string& path, const LutTable& table, const LutResult& result, const LutNotes& notes) {
+  AtomicFile to(path);
+  h5::NetcdfWriter file(to.temporary(), path);
+  put_table(file, table, result, notes);
   to.commit();
+}
+
+void write_lut_zarr(const std::string& path, const LutTable& table, const LutResult& result, const LutNotes& notes) {
+  ZarrWriter file(path);
+  put_table(file, table, result, notes);
 }
 
 void write_lut_csv(const std::string& path, const LutTable& table, const LutResult& result) {

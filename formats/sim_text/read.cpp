@@ -2,6 +2,7 @@
 #include <set>
 
 #include "formats/curve/curve.h"
+#include "formats/preset/preset.h"
 #include "formats/sim_text/air_tables.h"
 #include "formats/sim_text/context.h"
 #include "formats/sim_text/heat.h"
@@ -145,7 +146,7 @@ std::set<std::string> read_sensors(const Params& list, Simulation& sim, const Se
 
 Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
                            std::vector<std::string> settings) {
-  const Params root = Params::parse_file(path, settings);
+  const Params root = parse_simulation(path, settings);
   return read_simulation_tree(root, path, callbacks, std::move(settings));
 }
 

@@ -65,76 +65,123 @@ std::vector<Sight> sights_of(const AirColumn& column, double scene_height, std::
   return sights;
 }
 
-// The layers of a bin, from the top.
+// The layers of a bin, from the top. Thin neighbours are one layer: within it their order is forgotten, which changes
+// light by some quarter of the square of its slant depth.
 class BinLayers {
  public:
-  explicit BinLayers(const AirColumn& column)
-      : column_(column),
-        layers_(column.layers() - column.ground),
-        moments_(layers_.size()),
-        scattered_(layers_.size() * column.kinds.size()) {}
+  // kept: layers that sensors stand in, which stay alone. thin: depth of layers that become one.
+  BinLayers(const AirColumn& column, std::vector<bool> kept, double thin)
+      : column_(column), kept_(std::move(kept)), thin_(thin), scattered_(kept_.size() * column.kinds.size()) {}
 
-  void set(size_t bin) {
+  // emits: whether the black bodies of the levels are wanted.
+  void set(size_t bin, bool emits) {
     bin_ = bin;
-    const std::span<const double> heights = column_.shells.heights();
-    for (size_t n = 0; n < layers_.size(); ++n) {
-      const size_t l = layer_below(n), at = l * column_.bins + bin;
-      const double extinction = double{column_.extinction[at]}, all = mix(n, at);
-      layers_[n].depth = extinction * (heights[l + 1] - heights[l]);
-      layers_[n].albedo = extinction > 0 ? std::min(1.0, all / extinction) : 0;
-      layers_[n].moments = moments_[n];
+    layers_.clear(), first_.clear();
+    moments_.resize(kept_.size());
+    const double thin = emits ? 0.1 * thin_ : thin_;
+    double depth = INFINITY;
+    bool alone = true;
+    for (size_t n = 0; n < kept_.size(); ++n) {
+      const double own = depth_of(n);
+      if (alone || kept_[n] || depth + own > thin) first_.push_back(n), depth = 0;
+      depth += own;
+      alone = kept_[n];
     }
-  }
-  void set_emission(bool on) {
-    for (size_t n = 0; n < layers_.size(); ++n) {
-      const size_t l = layer_below(n);
-      layers_[n].planck_top = on ? double{column_.blackbody[(l + 1) * column_.bins + bin_]} : 0;
-      layers_[n].planck_bottom = on ? double{column_.blackbody[l * column_.bins + bin_]} : 0;
-    }
+    for (size_t g = 0; g < first_.size(); ++g) layers_.push_back(joined(g, emits));
   }
   // Phase function of every layer for a view.
   void phases(const Sight& sight, std::vector<double>& out) const {
     out.assign(layers_.size(), 0.0);
-    for (size_t n = 0; n < out.size(); ++n)
+    for (size_t g = 0; g < out.size(); ++g)
       for (size_t k = 0; k < column_.kinds.size(); ++k)
-        out[n] += scattered_[n * column_.kinds.size() + k] * double{sight.phase[k * column_.bins + bin_]};
+        out[g] += scattered_[g * column_.kinds.size() + k] * double{sight.phase[k * column_.bins + bin_]};
   }
   std::span<const DiffuseLayer> layers() const { return layers_; }
-  size_t layer_below(size_t n) const { return column_.layers() - 1 - n; }
-  // Vertical depth from the ground up to a place.
-  double depth_below(DiffusePlace place) const {
+  // Number of the first level of a layer, counted in the column's from the top; that of the ground for one beyond.
+  size_t level(size_t g) const { return g < first_.size() ? first_[g] : kept_.size(); }
+  // Of a place among the column's layers: that of a sensor, which stands in a kept one or at the top.
+  DiffusePlace place(DiffusePlace of) const {
+    const auto at = std::ranges::upper_bound(first_, static_cast<size_t>(of.layer));
+    return {static_cast<int>(at - first_.begin()) - 1, of.fraction};
+  }
+  // Vertical depth from the ground up to a place among `layers`.
+  double depth_below(DiffusePlace at) const {
     double sum = 0;
-    for (size_t n = static_cast<size_t>(place.layer); n < layers_.size(); ++n)
-      sum += layers_[n].depth * (n == static_cast<size_t>(place.layer) ? 1 - place.fraction : 1);
+    for (size_t g = static_cast<size_t>(at.layer); g < layers_.size(); ++g)
+      sum += layers_[g].depth * (g == static_cast<size_t>(at.layer) ? 1 - at.fraction : 1);
     return sum;
   }
 
  private:
-  // Moments of the layer, and the kinds' shares of what it scatters. -> what it scatters, 1/m
-  double mix(size_t n, size_t at) {
-    const size_t kinds = column_.kinds.size();
+  size_t below(size_t n) const { return column_.layers() - 1 - n; }
+  double thickness(size_t n) const {
+    const std::span<const double> heights = column_.shells.heights();
+    return heights[below(n) + 1] - heights[below(n)];
+  }
+  double depth_of(size_t n) const { return double{column_.extinction[below(n) * column_.bins + bin_]} * thickness(n); }
+  DiffuseLayer joined(size_t g, bool emits) {
+    const size_t kinds = column_.kinds.size(), end = level(g + 1);
+    double* const parts = &scattered_[g * kinds];
+    std::fill(parts, parts + kinds, 0.0);
+    DiffuseLayer to;
     double all = 0;
-    for (size_t k = 0; k < kinds; ++k) all += scattered_[n * kinds + k] = double{column_.kinds[k].scattering[at]};
-    std::vector<double>& m = moments_[n];
+    for (size_t n = first_[g]; n < end; ++n) {
+      to.depth += depth_of(n);
+      for (size_t k = 0; k < kinds; ++k)
+        parts[k] += double{column_.kinds[k].scattering[below(n) * column_.bins + bin_]} * thickness(n);
+    }
+    for (size_t k = 0; k < kinds; ++k) all += parts[k];
+    to.albedo = to.depth > 0 ? std::min(1.0, all / to.depth) : 0;
+    to.moments = mix(g, all);
+    if (emits) set_planck(g, to);
+    return to;
+  }
+  double planck(size_t level) const {  // from the top
+    return double{column_.blackbody[(column_.layers() - level) * column_.bins + bin_]};
+  }
+  // Several layers together emit what they did apart: levels high up are warm, but hardly any air is there.
+  void set_planck(size_t g, DiffuseLayer& to) const {
+    to.planck_top = planck(first_[g]);
+    to.planck_bottom = planck(level(g + 1));
+    if (level(g + 1) - first_[g] == 1 || !(to.depth > 0)) return;
+    double sum = 0;
+    for (size_t n = first_[g]; n < level(g + 1); ++n) sum += 0.5 * (planck(n) + planck(n + 1)) * depth_of(n);
+    to.planck_top = to.planck_bottom = sum / to.depth;
+  }
+  // Moments of a layer; its parts become shares of what it scatters.
+  std::span<const double> mix(size_t g, double all) {
+    const size_t kinds = column_.kinds.size();
+    std::vector<double>& m = moments_[g];
     m.clear();
-    if (!(all > 0)) return 0;
+    if (!(all > 0)) return m;
     for (size_t k = 0; k < kinds; ++k) {
-      double& share = scattered_[n * kinds + k];
+      double& share = scattered_[g * kinds + k];
       share /= all;
       const std::vector<double>& of = column_.kinds[k].moments[bin_];
       if (m.size() < of.size()) m.resize(of.size(), 0.0);
       for (size_t i = 0; i < of.size(); ++i) m[i] += share * of[i];
     }
     m[0] = 1;
-    return all;
+    return m;
   }
 
   const AirColumn& column_;
+  std::vector<bool> kept_;  // of the column's layers, from the top
+  double thin_;
   size_t bin_ = 0;
+  std::vector<size_t> first_;  // of the column's layers, in each of ours
   std::vector<DiffuseLayer> layers_;
   std::vector<std::vector<double>> moments_;
   std::vector<double> scattered_;  // [layer][kind]
 };
+
+// The column's layers, from the top, that sensors stand in.
+std::vector<bool> layers_of_sensors(const AirColumn& column, std::span<const Sight> sights) {
+  std::vector<bool> kept(column.layers() - column.ground, false);
+  for (const Sight& s : sights)
+    if (s.place.layer > 0 || s.place.fraction > 0) kept[static_cast<size_t>(s.place.layer)] = true;
+  return kept;
+}
 
 // Depths of a beam at the levels, from the top: [level][bin].
 std::vector<double> beam_levels(const AirColumn& column, double sun_cosine) {
@@ -171,69 +218,88 @@ std::vector<Sun> suns_of(const AirColumn& column, std::span<const Sight> sights)
   return suns;
 }
 
+// Irradiance of a sun over a bin, roughly: what light of the sun and of the air are to each other.
+double rough_sun(const SpectralState& state, size_t i) {
+  return kSunSolidAngle * planck_radiance(state.bins[i].center_um(), kSunRadiance);
+}
+
 class Solver {
  public:
-  Solver(const AirColumn& column, std::span<const Sight> sights, std::span<const Sun> suns, int streams,
-         std::span<CorrectionBins> out)
-      : column_(column), sights_(sights), suns_(suns), out_(out), ordinates_(streams), layers_(column) {
+  Solver(const AirColumn& column, std::span<const Sight> sights, std::span<const Sun> suns, const AirSpec& air,
+         double thin, std::span<CorrectionBins> out)
+      : column_(column),
+        sights_(sights),
+        suns_(suns),
+        out_(out),
+        ordinates_(air.streams),
+        layers_(column, layers_of_sensors(column, sights), thin) {
     // Straight down or up there is but the mean over azimuth.
     level_ = std::ranges::all_of(sights, [](const Sight& s) { return s.cosine == 1; });
   }
 
-  void bin(size_t i, bool emits) {
-    layers_.set(i);
-    layers_.set_emission(false);
-    for (const Sun& sun : suns_) lit(sun, i, &sun == suns_.data());
-    if (emits) warm(i);
+  // sun: irradiance across the beams.
+  void bin(size_t i, double sun, bool emits) {
+    layers_.set(i, emits);
+    sun_ = sun;
+    warmth_ = 0;
+    DiffuseProblem problem;
+    problem.layers = layers_.layers();
+    if (level_) problem.azimuth_tolerance = INFINITY;
+    if (emits) {
+      ordinates_.solve(problem);
+      warm(i);
+    }
+    for (const Sun& each : suns_) {
+      set_secants(each, i);
+      problem.beam = {sun_, each.cosine, secants_, {}};
+      if (!emits && &each == suns_.data())
+        ordinates_.solve(problem);
+      else
+        ordinates_.set_beam(problem.beam);
+      lit(each, i);
+    }
   }
 
  private:
-  void lit(const Sun& sun, size_t i, bool first) {
+  void set_secants(const Sun& sun, size_t i) {
     secants_.resize(layers_.layers().size());
-    for (size_t n = 0; n < secants_.size(); ++n) {
-      const double depth = layers_.layers()[n].depth;
-      const double slant = sun.depths[(n + 1) * column_.bins + i] - sun.depths[n * column_.bins + i];
-      secants_[n] = depth > 1e-12 ? slant / depth : 1 / sun.cosine;
+    for (size_t g = 0; g < secants_.size(); ++g) {
+      const double depth = layers_.layers()[g].depth;
+      const double slant =
+          sun.depths[layers_.level(g + 1) * column_.bins + i] - sun.depths[layers_.level(g) * column_.bins + i];
+      secants_[g] = depth > 1e-12 ? slant / depth : 1 / sun.cosine;
     }
-    const DiffuseBeam beam{1, sun.cosine, secants_, {}};
-    if (first) {
-      DiffuseProblem problem{layers_.layers(), beam, 0, 0, 0};
-      if (level_) problem.azimuth_tolerance = INFINITY;
-      ordinates_.solve(problem);
-    } else {
-      ordinates_.set_beam(beam);
-    }
-    const double direct = std::exp(-sun.depths[secants_.size() * column_.bins + i]);
-    const double total = ordinates_.black_irradiance() / sun.cosine, albedo = ordinates_.spherical_albedo();
-    ordinates_.set_ground(0, 0);
+  }
+  // Light of the air itself is in all that is read off; it is taken away again.
+  void lit(const Sun& sun, size_t i) {
+    const double direct = std::exp(-sun.depths[layers_.level(secants_.size()) * column_.bins + i]);
+    const double total = (ordinates_.black_irradiance() - warmth_) / (sun_ * sun.cosine),
+                 albedo = ordinates_.spherical_albedo();
     for (const size_t v : sun.views) {
-      layers_.phases(sights_[v], phases_);
-      out_[v].path[i] = radiance(sights_[v], phases_);
+      const Sight& s = sights_[v];
+      const DiffusePlace place = layers_.place(s.place);
+      layers_.phases(s, phases_);
+      ordinates_.set_ground(0, 0);
+      const double black = radiance(s, phases_);
+      ordinates_.set_ground(0, 1);
+      out_[v].path[i] = (black - out_[v].emission_up[i]) / sun_;
+      out_[v].up_total[i] = radiance(s, phases_) - black;
+      out_[v].up_direct[i] = std::exp(-layers_.depth_below(place) / s.cosine);
       out_[v].down_direct[i] = direct, out_[v].down_total[i] = total;
       out_[v].spherical_albedo[i] = albedo;
-    }
-    ordinates_.set_ground(0, 1);
-    for (const size_t v : sun.views) {
-      layers_.phases(sights_[v], phases_);
-      out_[v].up_total[i] = radiance(sights_[v], phases_) - out_[v].path[i];
-      out_[v].up_direct[i] = std::exp(-layers_.depth_below(sights_[v].place) / sights_[v].cosine);
     }
   }
 
   void warm(size_t i) {
-    layers_.set_emission(true);
-    DiffuseProblem problem;
-    problem.layers = layers_.layers();
-    ordinates_.solve(problem);
-    const double down = ordinates_.black_irradiance() / kPi;
+    warmth_ = ordinates_.black_irradiance();
     for (size_t v = 0; v < sights_.size(); ++v) {
       out_[v].emission_up[i] = radiance(sights_[v], {});
-      out_[v].emission_down[i] = down;
+      out_[v].emission_down[i] = warmth_ / kPi;
     }
   }
 
   double radiance(const Sight& s, std::span<const double> phases) const {
-    return ordinates_.radiance(s.place, s.cosine, s.travel, phases);
+    return ordinates_.radiance(layers_.place(s.place), s.cosine, s.travel, phases);
   }
 
   const AirColumn& column_;
@@ -243,6 +309,7 @@ class Solver {
   DiscreteOrdinates ordinates_;
   BinLayers layers_;
   bool level_ = false;
+  double sun_ = 1, warmth_ = 0;  // irradiances across the beam, and of the air on the ground
   std::vector<double> secants_, phases_;
 };
 
@@ -251,13 +318,13 @@ bool shines(const AirColumn& column, const SpectralState& state, size_t i) {
   double most = 0;
   for (size_t l = column.ground; l <= column.layers(); ++l)
     most = std::max(most, double{column.blackbody[l * column.bins + i]});
-  return most > kDarkest * kSunSolidAngle / kPi * planck_radiance(state.bins[i].center_um(), kSunRadiance);
+  return most > kDarkest / kPi * rough_sun(state, i);
 }
 
 }  // namespace
 
 std::vector<CorrectionBins> air_correction(const AirSpec& air, const SpectralState& state,
-                                           std::span<const CorrectionView> views) {
+                                           std::span<const CorrectionView> views, double thin) {
   const AirColumn column = bake_column(air, state);
   const std::vector<Sight> sights = sights_of(column, air.height_of_scene(), views);
   const std::vector<Sun> suns = suns_of(column, sights);
@@ -265,9 +332,9 @@ std::vector<CorrectionBins> air_correction(const AirSpec& air, const SpectralSta
   std::vector<CorrectionBins> out(views.size(), {zeros, zeros, zeros, zeros, zeros, zeros, zeros, zeros});
   constexpr size_t kAtOnce = 16;
   parallel_for(0, (state.size() + kAtOnce - 1) / kAtOnce, 1, [&](size_t begin, size_t end) {
-    Solver solver(column, sights, suns, air.streams, out);
+    Solver solver(column, sights, suns, air, thin, out);
     for (size_t i = begin * kAtOnce; i < std::min(state.size(), end * kAtOnce); ++i)
-      solver.bin(i, shines(column, state, i));
+      solver.bin(i, rough_sun(state, i), shines(column, state, i));
   });
   return out;
 }

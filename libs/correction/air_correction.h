@@ -40,8 +40,10 @@ struct CorrectionBins {
 };
 
 // For each view; in parallel over bins. Emission is left out, as 0, where black bodies as warm as the air shine less
-// than 1e-7 of sunlight. Error: angles outside of their ranges, a sensor below the ground; as bake_column.
+// than 1e-7 of sunlight. thin: neighbouring layers up to this optical depth together, a tenth of it where the air
+// emits, are solved as one, with an error of some quarter of the square of its slant depth; 0: none are. Error: angles
+// outside of their ranges, a sensor below the ground; as bake_column.
 std::vector<CorrectionBins> air_correction(const AirSpec& air, const SpectralState& state,
-                                           std::span<const CorrectionView> views);
+                                           std::span<const CorrectionView> views, double thin = 0);
 
 }  // namespace suite

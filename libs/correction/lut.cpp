@@ -147,7 +147,7 @@ LutState lut_state(const AirSpec& air, const LutTable& table, size_t state, cons
     const std::vector<double> at = values_at(table.axes, kLutStateAxes, kLutAxes - kLutStateAxes, v);
     views.push_back({at[2], at[1], at[3], 1e3 * at[0]});
   }
-  const std::vector<CorrectionBins> all = air_correction(here, bins, views);
+  const std::vector<CorrectionBins> all = air_correction(here, bins, views, fineness.thin);
   const std::vector<float> sun = bins.sample(solar_irradiance());
   const BandProjection projection(bins, table.bands);
   LutState out;

@@ -49,7 +49,8 @@ using LutState = std::vector<LutValues>;
 struct LutFineness {
   double widest_um = 0;  // of a bin; 0: half the narrowest band's width at half maximum, 10 nm at most
   int streams = 16;
-  int points = 4;  // of the gases in a bin at most (GasReduction)
+  int points = 4;      // of the gases in a bin at most (GasReduction)
+  double thin = 0.01;  // optical depth of layers that are solved as one (air_correction)
 };
 
 // Of the bins, um.

@@ -1,6 +1,7 @@
 // Where the first things met are and how they are turned: means over the samples that met something.
 #include <cmath>
 
+#include "transport/truth/terrain.h"
 #include "transport/truth/truth.h"
 
 namespace suite {
@@ -136,6 +137,7 @@ void add_angle_rows(std::vector<TruthRow>& table) {
                            if (n.hits > 0 && x.environment.towards_sun()) v[0] = sum[0] / n.hits;
                          });
                    }});
+  add_terrain_rows(table);
 }
 
 }  // namespace suite

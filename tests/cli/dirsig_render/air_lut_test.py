@@ -2,6 +2,7 @@
 their place, and the radiance of a rendered ground put together from the table. air_lut_test.py BIN FOLDER
 """
 import csv
+import json
 import math
 import pathlib
 import re
@@ -39,6 +40,7 @@ observer_altitude_km: 3
 observer_zenith: 45
 solar_zenith: {SUN}
 relative_azimuth: [0, 90]
+zarr: true
 """
 
 
@@ -81,6 +83,20 @@ class AirLut(unittest.TestCase):
             at = table["sphalb"].sel(wl=float(row["wl (nm)"]), AOT550=float(row["AOT550 (1)"]),
                                      relative_azimuth=float(row["relative_azimuth (deg)"]))
             self.assertAlmostEqual(float(row["sphalb (1)"]) / float(at), 1, 5)
+
+    def test_zarr_holds_the_same(self):
+        """By the specification of version 2, as no reader of Zarr need be installed: one chunk an array, without compression."""
+        store, table = FOLDER / "lut/air_lut.zarr", xarray.open_dataset(FOLDER / "lut/air_lut.nc")
+        meta = json.loads((store / ".zmetadata").read_text())["metadata"]
+        self.assertEqual(json.loads((store / ".zgroup").read_text()), {"zarr_format": 2})
+        self.assertEqual(meta[".zattrs"]["RT_mode"], "transm")
+        self.assertEqual({name.split("/")[0] for name in meta if "/" in name}, set(table.variables))
+        for name, values in table.variables.items():
+            about = json.loads((store / name / ".zarray").read_text())
+            self.assertEqual((about, about["shape"], about["dtype"], about["compressor"]), (meta[name + "/.zarray"], list(values.shape), "<f8", None))
+            self.assertEqual(meta[name + "/.zattrs"]["_ARRAY_DIMENSIONS"], list(values.dims))
+            chunk = ".".join("0" * values.ndim) or "0"
+            numpy.testing.assert_array_equal(numpy.fromfile(store / name / chunk, "<f8").reshape(values.shape), values)
 
     def test_what_is_neglected_is_said_with_its_size(self):
         self.assertIn("rhoatm is within", self.said)

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "formats/envi/envi.h"
 #include "formats/raster/raster.h"
+#include "math/vec.h"
 #include "motion/scene_frame.h"
 #include "sensor/detectors/detectors.h"
 #include "support/programs_kit.h"
@@ -339,6 +340,40 @@ TEST_F(SensorOutput, LightOfUnknownPolarisationIsToldOf) {
   const CommandResult r = run("dirsig-render unknown.yaml -o unknown");
   EXPECT_EQ(r.code, 0);
   EXPECT_THAT(r.err, testing::AllOf(HasSubstr("[DR209]"), HasSubstr("100.0 % of the light")));
+}
+
+// Level ground under an endless wall whose top stands at an elevation e: (1 + cos e) / 2 of an even sky (J. R. Howell,
+// R. Siegel, "Thermal Radiation Heat Transfer", differential element to a strip). A roof of slope s alone: (1 + cos s)
+// / 2.
+TEST_F(SensorOutput, TerrainIsAsOpenAsItsWallsLeaveIt) {
+  prepare(
+      "scene: 1\nmaterials: {g: {model: lambert, reflectance: 0.2}}\nobjects:\n  ground: {plane: {width: 60, depth: "
+      "60}, "
+      "material: g}\n  wall: {plane: {width: 20, depth: 100000}, material: g}\n  roof: {plane: {width: 12, depth: 12}, "
+      "material: g}\nworld:\n  - {place: ground}\n  - {place: wall, rotate: {euler_deg: [0, 90, 0]}, translate: [20, "
+      "0, "
+      "10]}\n  - {place: roof, rotate: {euler_deg: [0, 30, 0]}, translate: [-4000, 0, 5]}\n",
+      "wall");
+  const auto truth = [&](const std::string& at, const std::string& out) {
+    write_file(
+        *folder_ / (out + ".yaml"),
+        std::string_view("scene: wall.h5\nsky: {radiance: 1}\nsensors:\n  - {kind: orthographic, name: map, columns: "
+                         "3, rows: 1, gsd_m: 2, center_m: " +
+                         at + ", paths: 512, truth: [slope, aspect, sky_view], " + kBand + "}\n"));
+    EXPECT_EQ(run("dirsig-render " + out + ".yaml -q -o " + out).code, 0);
+    return EnviImage(*folder_ / (out + "/map_truth.img")).read_all();  // [pixel][band]
+  };
+  const std::vector<double> level = truth("[10, 0]", "level"), roof = truth("[-4000, 0]", "roof");
+  for (size_t i = 0; i < 3; ++i) {
+    const double away = 20 - (8 + 2 * static_cast<double>(i));
+    EXPECT_NEAR(level[3 * i + 2], (1 + away / std::hypot(away, 20)) / 2, 0.02) << i;
+    EXPECT_LT(level[3 * i], 1e-4);
+    EXPECT_TRUE(std::isnan(level[3 * i + 1]));
+    EXPECT_NEAR(roof[3 * i], 30, 1e-3);
+    EXPECT_NEAR(roof[3 * i + 1], 90, 1e-3);
+    EXPECT_NEAR(roof[3 * i + 2], (1 + std::cos(30 * kDegree)) / 2, 0.02);
+  }
+  EXPECT_GT(level[2] - level[8], 0.05);  // nearer to the wall there is less sky
 }
 
 }  // namespace

@@ -108,6 +108,35 @@ TEST(AirCorrection, AirAsWarmAsAnOpaqueBodyShinesLikeOne) {
   }
 }
 
+TEST(AirCorrection, ThinLayersMayBeSolvedAsOne) {
+  // Over bins with and without emission, for a sensor above the air and one within. Bounds: a quarter of the square of
+  // the slant depth, 0.01 (1/0.8 + 1). Negative control: layers a hundred times as deep change more than that.
+  const AirSpec air = [] {
+    AirSpec hazy = summer(true);
+    hazy.streams = 8;
+    return hazy;
+  }();
+  const std::vector<CorrectionView> views{{std::acos(0.8) / kDegree, 0, 0, 120e3}, {0, 40, 60, 3000}};
+  const auto furthest = [&](const SpectralState& state, double thin) {
+    const auto apart = air_correction(air, state, views), joined = air_correction(air, state, views, thin);
+    double most = 0;
+    for (size_t v = 0; v < views.size(); ++v)
+      for (size_t i = 0; i < state.size(); ++i) {
+        EXPECT_NEAR(joined[v].up_direct[i], apart[v].up_direct[i], 1e-6);
+        EXPECT_NEAR(joined[v].down_direct[i], apart[v].down_direct[i], 1e-12);
+        EXPECT_NEAR(joined[v].emission_up[i], apart[v].emission_up[i], 2e-3 * apart[v].emission_up[i] + 1e-12);
+        for (const auto member : {&CorrectionBins::path, &CorrectionBins::down_total, &CorrectionBins::up_total,
+                                  &CorrectionBins::spherical_albedo})
+          most = std::max(most, std::fabs((joined[v].*member)[i] - (apart[v].*member)[i]));
+      }
+    return most;
+  };
+  const double bound = 0.25 * std::pow(0.01 * (1 / 0.8 + 1), 2);
+  EXPECT_LT(furthest(bins(air, 0.6, 0.95, 4), 0.01), bound);
+  EXPECT_LT(furthest(bins(air, 3.6, 4.0, 2), 0.01), bound);
+  EXPECT_GT(furthest(bins(air, 0.6, 0.95, 4), 1), bound);
+}
+
 TEST(AirCorrection, FaultsAreNamed) {
   const AirSpec air = summer(false);
   const SpectralState state = bins(air, 0.5, 0.6, 1);

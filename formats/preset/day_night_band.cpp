@@ -1,4 +1,4 @@
-#include "day_night_band.h"
+#include "formats/preset/day_night_band.h"
 
 #include <array>
 #include <cmath>
