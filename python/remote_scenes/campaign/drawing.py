@@ -41,9 +41,11 @@ class Drawn:
 
 class Drawer:
     """Draws samples of a campaign, and prepares their scenes. What returns is prepared once, in `shared`:
+
     - A scene whose text takes few values, as a whole; the objects of a sample are prepared beside it.
     - Else its shape, where only materials vary; the scene is prepared with the objects, for each sample.
-    - Else nothing but what is placed."""
+    - Else nothing but what is placed.
+    """
 
     def __init__(self, campaign: Campaign, folder: Path, version: str) -> None:
         """folder: of the dataset; version: of the programs."""

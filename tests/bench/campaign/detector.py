@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""detector.py FOLDER [--chips 500] [--first N] [--test 100] [--workers 1]
+"""detector.py FOLDER [--chips 500] [--first N] [--test 100] [--workers 1] [--svg FILE]
 Makes chips of vehicles on a parking lot and a street in four visible and near-infrared bands and a thermal one (the scene of sample_scenes/campaigns with
 temperatures), trains a small detector on 50 to 400 of them, and prints its average precision on chips of another seed, and on chips whose materials have
 other spectra. The same command goes on where it was ended.
 
-The detector: histograms of gradients in 4 x 4 cells (N. Dalal and B. Triggs, CVPR 2005) with means and spreads of the bands about every fourth pixel, a
-linear classifier by ridge regression, and maxima of its score. A detection is right when it lies in the oriented box of a vehicle that has none yet; vehicles
+The detector: histograms of gradients in 4 x 4 cells (N. Dalal and B. Triggs, CVPR 2005) with means of the bands in them about every second pixel, ridge
+regression on random rectified features of them, and maxima of its score. A detection is right when it lies in the oriented box of a vehicle that has none yet; vehicles
 of which less than half is seen count neither way. Needs numpy, xarray, PyYAML, the package on PYTHONPATH and the programs (REMOTE_SCENES_BIN)."""
 import argparse
 import json
@@ -20,8 +20,8 @@ from remote_scenes import campaign
 from remote_scenes.campaign.engine import prepare_folder, run_samples
 from remote_scenes.envi import read_values
 
-SIZES, REPEATS = (50, 100, 200, 400), 5
-STEP, CELL, BINS = 4, 4, 8
+SIZES, REPEATS = (50, 100, 200, 400), 3
+STEP, CELL, BINS, HIDDEN, RIDGE = 2, 4, 8, 400, 1e-3
 TEMPERATURE_K = {"asphalt": 316, "lines": 309, "grass": 301, "leaves": 299, "paint": 312, "white": 306, "silver": 310, "black": 322, "red": 315, "blue": 316, "glass": 308, "tyre": 318}
 # W/(m2 sr um), even: blue by day, about 240 K in the window. The sun shines without air.
 SKY = {"radiance": {"wavelength_um": [0.3, 0.45, 0.55, 0.65, 0.85, 1.05, 4, 8, 10.5, 13], "value": [70, 75, 50, 35, 15, 8, 0.05, 4, 2.5, 5]}}
@@ -72,25 +72,27 @@ def chips(folder, samples, first, seed, other, workers):
 
 
 def features(image):
-    """(places, features) of places every STEP pixels, and the places (x, y)."""
+    """(places, features) of places every second pixel, and the places (x, y)."""
     scaled = (image - image.mean(axis=(1, 2), keepdims=True)) / (image.std(axis=(1, 2), keepdims=True) + 1e-12)
-    padded = np.pad(scaled, ((0, 0), (8, 8), (8, 8)), mode="edge")
+    padded = np.pad(scaled, ((0, 0), (8, 8 + CELL), (8, 8 + CELL)), mode="edge")
     gy, gx = np.gradient(padded, axis=(1, 2))
     best = np.hypot(gx, gy).argmax(axis=0)[None]
     gx, gy = (np.take_along_axis(g, best, 0)[0] for g in (gx, gy))
     size, turn = np.hypot(gx, gy), (np.arctan2(gy, gx) % np.pi) * BINS / np.pi
-    planes = np.stack([size * (turn.astype(int) % BINS == k) for k in range(BINS)])
-    cells = planes.reshape(BINS, planes.shape[1] // CELL, CELL, planes.shape[2] // CELL, CELL).sum(axis=(2, 4))
-    means = padded.reshape(len(image), cells.shape[1], CELL, cells.shape[2], CELL).mean(axis=(2, 4))
+    planes = np.concatenate([[size * (turn.astype(int) % BINS == k) for k in range(BINS)], padded])
     out, places = [], []
-    for row in range(cells.shape[1] - 3):
-        for column in range(cells.shape[2] - 3):
-            block = cells[:, row:row + 4, column:column + 4]
-            light = means[:, row:row + 4, column:column + 4]
-            middle, around = light[:, 1:3, 1:3].mean(axis=(1, 2)), light.mean(axis=(1, 2))
-            out.append(np.concatenate([(block / (np.linalg.norm(block) + 1e-9)).ravel(), middle, np.abs(middle - around), light.std(axis=(1, 2)), np.abs(middle), [1]]))
-            places.append((column * CELL, row * CELL))
-    return np.array(out), np.array(places, float)
+    for down in range(0, CELL, STEP):
+        for right in range(0, CELL, STEP):
+            shifted = planes[:, down:planes.shape[1] - CELL + down, right:planes.shape[2] - CELL + right]
+            rows, columns = shifted.shape[1] // CELL, shifted.shape[2] // CELL
+            cells = shifted.reshape(len(planes), rows, CELL, columns, CELL).mean(axis=(2, 4))
+            blocks = np.lib.stride_tricks.sliding_window_view(cells, (4, 4), axis=(1, 2)).reshape(len(planes), -1, 16).transpose(1, 0, 2)
+            edges, light = blocks[:, :BINS].reshape(len(blocks), -1), blocks[:, BINS:]
+            out.append(np.concatenate([edges / (np.linalg.norm(edges, axis=1, keepdims=True) + 1e-9), (light - light.mean(axis=2, keepdims=True)).reshape(len(blocks), -1),
+                                       light.mean(axis=2), light.std(axis=2)], axis=1))
+            y, x = np.divmod(np.arange(len(blocks)), columns - 3)
+            places.append(np.stack([x * CELL + right, y * CELL + down], axis=1))
+    return np.concatenate(out).astype(np.float32), np.concatenate(places).astype(float)
 
 
 def inside(box, places, share=1.0):
@@ -115,21 +117,34 @@ def targets(labels, places):
     return out
 
 
-def fit(parts, wanted):
-    """Ridge regression in which both classes weigh the same."""
-    x, y = np.concatenate(parts), np.concatenate(wanted)
-    x, y = x[y != 0], y[y != 0]
-    weight = np.where(y > 0, 0.5 / max((y > 0).sum(), 1), 0.5 / max((y < 0).sum(), 1))[:, None]
-    return np.linalg.solve(x.T @ (weight * x) + 1e-3 * np.eye(x.shape[1]), x.T @ (weight[:, 0] * y))
+class Detector:
+    """Ridge regression on random rectified features (A. Rahimi and B. Recht 2008), in which both classes weigh the same."""
+
+    def __init__(self, parts, wanted):
+        dice = np.random.default_rng(7)
+        # All places of vehicles, and one in sixteen of the others.
+        kept = [(y > 0) | ((y < 0) & (dice.random(len(y)) < 1 / 16)) for y in wanted]
+        x, y = np.concatenate([p[k] for p, k in zip(parts, kept)]), np.concatenate([w[k] for w, k in zip(wanted, kept)])
+        self.mean, self.spread = x.mean(axis=0), x.std(axis=0) + 1e-6
+        self.turn = dice.normal(size=(x.shape[1] + 1, HIDDEN)).astype(np.float32) / np.sqrt(x.shape[1])
+        weight = np.where(y > 0, 0.5 / (y > 0).sum(), 0.5 / (y < 0).sum())[:, None].astype(np.float32)
+        h = self._hidden(x)
+        self.model = np.linalg.solve((h.T @ (weight * h)).astype(float) + RIDGE * np.eye(HIDDEN), h.T @ (weight[:, 0] * y))
+
+    def _hidden(self, x):
+        return np.maximum(np.concatenate([(x - self.mean) / self.spread, np.ones((len(x), 1), np.float32)], axis=1) @ self.turn, 0)
+
+    def score(self, x):
+        return self._hidden(x) @ self.model
 
 
 def average_precision(model, data):
     """Area under precision over recall of all detections of all chips (all points)."""
     found, total = [], 0
     for x, places, labels in data:
-        score, free = x @ model, [seen(label) for label in labels]
+        score, free = model.score(x), [seen(label) for label in labels]
         total += sum(free)
-        left = score > -1.5
+        left = score > -0.5
         while left.any():
             at = np.flatnonzero(left)[score[left].argmax()]
             left &= np.hypot(*(places - places[at]).T) > 7
@@ -144,6 +159,21 @@ def average_precision(model, data):
     return float((precision * right).sum() / total)
 
 
+def curve(rows, path):
+    """The table as a picture (SVG): average precision over the number of chips, in factors of two."""
+    colours, names = ("#1f77b4", "#d62728"), ("another seed", "other spectra")
+    at = lambda size, value: (60 + 110 * np.log2(size / SIZES[0]), 230 - 200 * value)
+    parts = [f'<line x1="60" x2="410" y1="{at(50, v)[1]}" y2="{at(50, v)[1]}" stroke="#ddd"/><text x="52" y="{at(50, v)[1] + 4}" text-anchor="end">{v:g}</text>' for v in (0, 0.25, 0.5, 0.75, 1)]
+    parts += [f'<text x="{at(size, 0)[0]}" y="248" text-anchor="middle">{size}</text>' for size, _, _ in rows] + ['<text x="235" y="266" text-anchor="middle">chips of training</text>']
+    for k, (colour, name) in enumerate(zip(colours, names)):
+        points = [at(size, mean[k]) for size, mean, _ in rows]
+        parts.append(f'<polyline fill="none" stroke="{colour}" stroke-width="2" points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in points)}"/>')
+        parts += [f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{y - 200 * spread[k]:.1f}" y2="{y + 200 * spread[k]:.1f}" stroke="{colour}"/>' for (x, y), (_, _, spread) in zip(points, rows)]
+        parts.append(f'<text x="300" y="{190 + 18 * k}" fill="{colour}">{name}</text>')
+    path.write_text('<svg xmlns="http://www.w3.org/2000/svg" width="430" height="275" font-family="sans-serif" font-size="12"><rect width="430" height="275" fill="white"/>'
+                    '<text x="60" y="18">average precision</text>' + "".join(parts) + "</svg>\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
@@ -151,6 +181,7 @@ def main():
     parser.add_argument("--first", type=int, help="the first so many of them alone")
     parser.add_argument("--test", type=int, default=100)
     parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--svg", type=Path, help="the curve as a picture")
     options = parser.parse_args()
     sets = {}
     first = options.first or options.chips
@@ -158,16 +189,19 @@ def main():
                                            ("train", options.chips, first, 1, False)):
         images, labels = chips(options.folder / name.replace(" ", "_"), count, some, seed, other, options.workers)
         sets[name] = [(*features(image), label) for image, label in zip(images, labels)]
-    dice = np.random.default_rng(1)
+    dice, rows = np.random.default_rng(1), []
     print("chips   held out         other spectra    (average precision, standard deviation of the choice of chips)")
     for size in (s for s in SIZES if s <= first):
         scores = []
         for _ in range(REPEATS):
             chosen = [sets["train"][i] for i in dice.permutation(first)[:size]]
-            model = fit([x for x, _, _ in chosen], [targets(labels, places) for _, places, labels in chosen])
+            model = Detector([x for x, _, _ in chosen], [targets(labels, places) for _, places, labels in chosen])
             scores.append([average_precision(model, sets[name]) for name in ("held out", "other spectra")])
         mean, spread = np.mean(scores, axis=0), np.std(scores, axis=0, ddof=1)
         print(f"{size:5d}   " + "   ".join(f"{m:.3f} +- {s:.3f}" for m, s in zip(mean, spread)), flush=True)
+        rows.append((size, mean, spread))
+    if options.svg and rows:
+        curve(rows, options.svg)
     return 0
 
 
