@@ -320,6 +320,11 @@ std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceS
                    "sensor '" + sensor.name() +
                        "' sees polarisation: manifold NEE, multi-vertex volumetric NEE and splitting in water carry no "
                        "Mueller matrices and are off; light behind smooth interfaces is left to chance"});
+  if (stokes && sources.air && sources.air->scattering == AirScattering::diffuse && sources.air->adjacency)
+    all.push_back({Dr::stokes_techniques,
+                   "sensor '" + sensor.name() +
+                       "' sees polarisation: the residual estimator of the air carries no Mueller matrices and is off; "
+                       "the air shines as over an even ground, without shadows in it"});
   for (Diagnostic& d : diagnose_surroundings(tracer, optics)) all.push_back(std::move(d));
   return all;
 }

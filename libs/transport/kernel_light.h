@@ -177,7 +177,9 @@ void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
     factor.spectrum = memory.data();
   }
   if (kNeeds && factor.spectrum != memory.data()) wave_.throughputs.give_back(p);
-  const float* const radiance = q.spectrum ? q.spectrum : spectrum_of(q, i);
+  const float* radiance = q.spectrum ? q.spectrum : spectrum_of(q, i);
+  if constexpr (Wave::kStokes)
+    if (of_air) radiance = wave_.polarise_air(wave_.sight_rays.rays()[i].origin, q.direction, distance, radiance);
   if (arrives && keep_first_ && q.light == wave_.environment.sun && !node.event && wave_.is_first(node))
     firsts_[p].sunlit = true;
   Contribution& c = wave_.contribution(p, q.light);
@@ -199,7 +201,10 @@ void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
     const double off = node.event ? 0 : step_along(wave_.hits[node.slot], q.direction);
     c.arrival += wave_.space.optical_way(p, i, distance + off);
   }
-  if constexpr (Wave::kStokes) c.polarised = wave_.polarise(node, q.direction);
+  if constexpr (Wave::kStokes) {
+    c.polarised = wave_.polarise(node, q.direction);
+    if (of_air) wave_.lit_by_air(c);
+  }
   wave_.contribute();
   if constexpr (Wave::kStokes) wave_.hand_over();  // the next light has other matrices
 }

@@ -39,6 +39,10 @@ struct HeroSet {
 struct PolarisedScratch {
   std::vector<Mueller> matrices, aside;
   PolarisedEvent event;
+  struct {
+    std::vector<float> I, Q, U;  // Q and U over I
+    double unknown = 0;
+  } air;  // light along the last way through it
 };
 
 // Contributions of the stage, until a sink takes them.
@@ -134,6 +138,11 @@ class Wave {
   const PolarisedEvent* polarise(const PathNode& node, Dir in, const Continuation* dirac = nullptr);
   // Of what a warm surface sends out.
   const PolarisedEvent* polarise_emission(uint32_t p);
+  // Of the air's own light along a way, `radiance` as the scalar field has it: returns that of the vector field, which
+  // stays until the next way.
+  const float* polarise_air(Vec3 from, Dir d, double distance, const float* radiance);
+  // A contribution brings that light: before its scattering, where it has one.
+  void lit_by_air(Contribution& c);
 
  private:
   void list_lights();

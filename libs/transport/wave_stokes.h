@@ -1,5 +1,8 @@
 // Definitions of wave.h: the Mueller matrices of events, for algebras that carry polarisation.
 #pragma once
+#include <algorithm>
+
+#include "light/polarised_air.h"
 #include "transport/wave.h"
 
 namespace suite {
@@ -39,6 +42,42 @@ const PolarisedEvent* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_em
     return &polarisation.event;
   }
   return nullptr;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+const float* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_air(Vec3 from, Dir d, double distance,
+                                                                         const float* radiance) {
+  auto& air = polarisation.air;
+  if constexpr (requires { space.polarised_air(); }) {
+    for (std::vector<float>* row : {&air.I, &air.Q, &air.U}) row->resize(bins);
+    air.unknown = space.polarised_air().along(from, d, distance, {air.I, air.Q, air.U});
+    for (size_t i = 0; i < bins; ++i) {
+      air.I[i] = std::max(0.0f, radiance[i] + air.I[i]);
+      const float over = air.I[i] > 0 ? 1 / air.I[i] : 0;
+      air.Q[i] *= over, air.U[i] *= over;
+    }
+    return air.I.data();
+  }
+  return radiance;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void Wave<Surfaces, Space, Throughputs, Estimator>::lit_by_air(Contribution& c) {
+  if constexpr (requires { space.polarised_air(); }) {
+    const auto& air = polarisation.air;
+    auto& [matrices, aside, event, unused] = polarisation;
+    const bool one = c.polarised && c.polarised->matrices.size() == 1;
+    matrices.resize(bins);
+    const Mueller first = c.polarised ? matrices[0] : Mueller::identity();
+    for (size_t i = 0; i < bins; ++i) {
+      const Mueller& m = c.polarised && !one ? matrices[i] : first;
+      const Stokes s = m * Stokes{1, double{air.Q[i]}, double{air.U[i]}, 0};
+      for (int k = 0; k < 4; ++k) matrices[i](k, 0) = s[static_cast<size_t>(k)];
+    }
+    event = {matrices, c.polarised ? event.unknown : 0};
+    c.polarised = &event;
+    c.unknown = static_cast<float>(air.unknown);
+  }
 }
 
 }  // namespace suite
