@@ -16,7 +16,9 @@ namespace {
 
 constexpr double kThin = 1e-7;   // scattering of such a depth does not matter
 constexpr double kLeast = 1e-4;  // nor do coefficients of matrices below it
-constexpr int kMostStreams = 16;
+// Polarisation is that of molecules, so smooth that more change I, Q and U by less than 0.04 % of I, at 8 times the
+// cost (tests/physics/light/polarised_air_test.cpp).
+constexpr int kMostStreams = 8;
 
 // Denser towards the zenith, where modes fall with the sine, and the horizon, where ways are long.
 const std::vector<double>& cosines_of_ways() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "air/greek_matrix.h"
 #include "light/air_loops.h"
@@ -37,7 +38,16 @@ struct PolarisedAir::Scratch {
 
 PolarisedAir::PolarisedAir(const AirColumn& column, const std::vector<Beam>& beams, const BeamLight& once,
                            std::shared_ptr<const PolarisedSource> source)
-    : column_(column), beams_(beams), once_(once), source_(std::move(source)), bins_(column.bins) {}
+    : column_(column), beams_(beams), once_(once), source_(std::move(source)), bins_(column.bins) {
+  constexpr size_t kMostBins = 500;  // 40 MB a height
+  if (beams_.empty() || bins_ > kMostBins) return;
+  if (beams_.size() == 1) symmetric_ = azimuth(beams_[0].direction);
+  sky_ = std::make_unique<SkyTable>(
+      3 * bins_ + 1, false, symmetric_, 1000, [this](double height, Dir d, std::span<float> row) {
+        const Light to{row.first(bins_), row.subspan(bins_, bins_), row.subspan(2 * bins_, bins_)};
+        row.back() = static_cast<float>(along({0, 0, height}, d, std::numeric_limits<double>::infinity(), to));
+      });
+}
 
 PolarisedAir::Scratch& PolarisedAir::scratch() const {
   thread_local Scratch s;
@@ -145,6 +155,23 @@ double PolarisedAir::along(Vec3 from, Dir d, double distance, const Light& to) c
     for (size_t i = 0; i < bins_; ++i) s.T[i] *= s.keep[i];
   });
   return s.all > 0 ? s.unknown / s.all : 0;
+}
+
+double PolarisedAir::sky(Vec3 from, Dir d, const Light& to) const {
+  constexpr double kFar = 3e4;  // m, as of stratified_air.cpp
+  const double height = column_.shells.height(from), rise = dot(column_.shells.up(from), d);
+  const double level = std::hypot(d.x, d.y), tilt = level > 0 ? std::sqrt(std::max(0.0, 1 - rise * rise)) / level : 0;
+  const Dir local{d.x * tilt, d.y * tilt, rise};
+  if (!sky_ || std::fabs(from.x) > kFar || std::fabs(from.y) > kFar || !SkyTable::covers(height, local))
+    return along(from, d, std::numeric_limits<double>::infinity(), to);
+  const float* const row = sky_->drawn(height, local);
+  // The table has the side of rising azimuths; on the other one U has the other sign.
+  const bool other = symmetric_ && std::sin(azimuth(d) - *symmetric_) < 0;
+  for (size_t i = 0; i < bins_; ++i) {
+    to.I[i] = row[i], to.Q[i] = row[bins_ + i];
+    to.U[i] = other ? -row[2 * bins_ + i] : row[2 * bins_ + i];
+  }
+  return double{row[3 * bins_]};
 }
 
 }  // namespace suite

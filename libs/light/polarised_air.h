@@ -9,11 +9,13 @@
 // Error against paths traced through the same air: docs/theory/polarisation.md.
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "air/polarised_source.h"
 #include "light/beam_light.h"
+#include "light/sky_table.h"
 
 namespace suite {
 
@@ -30,6 +32,10 @@ class PolarisedAir {
   // Of the light that comes to `from` along a segment (Atmosphere::path), in the meridian frame of its travel: what is
   // to be added to I, and Q and U. Returns the share of light scattered once by what tells no matrix.
   double along(Vec3 from, Dir d, double distance, const Light& to) const;
+  // The same of the sky, to infinity, from places where light that is scattered goes on: near the scene's middle one of
+  // the values of a table, drawn with its weight between its neighbours (SkyTable::drawn). Within a degree of the
+  // zenith meridians are mixed.
+  double sky(Vec3 from, Dir d, const Light& to) const;
 
  private:
   struct Scratch;
@@ -44,6 +50,8 @@ class PolarisedAir {
   const BeamLight& once_;
   std::shared_ptr<const PolarisedSource> source_;
   size_t bins_;
+  std::optional<double> symmetric_;  // azimuth of the only beam
+  std::unique_ptr<SkyTable> sky_;    // I, Q, U per bin, and the share; null: too large
 };
 
 }  // namespace suite

@@ -122,6 +122,8 @@ const float* PathKernel<Wave>::spectrum_of(const Question& q, size_t i) {
   if (q.light == kFromAir) {
     const float* const radiance = wave_.space.sky_radiance(ray, wave_.transmission, own);
     if (radiance != own.data()) wave_.throughputs.give_back(p);
+    if constexpr (Wave::kStokes)
+      return wave_.polarise_air(Wave::AirWay::sky, ray.origin, q.direction, wave_.sight_rays.distance()[i], radiance);
     return radiance;
   }
   std::fill(own.begin(), own.end(), 0.0f);
@@ -177,9 +179,7 @@ void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
     factor.spectrum = memory.data();
   }
   if (kNeeds && factor.spectrum != memory.data()) wave_.throughputs.give_back(p);
-  const float* radiance = q.spectrum ? q.spectrum : spectrum_of(q, i);
-  if constexpr (Wave::kStokes)
-    if (of_air) radiance = wave_.polarise_air(wave_.sight_rays.rays()[i].origin, q.direction, distance, radiance);
+  const float* const radiance = q.spectrum ? q.spectrum : spectrum_of(q, i);
   if (arrives && keep_first_ && q.light == wave_.environment.sun && !node.event && wave_.is_first(node))
     firsts_[p].sunlit = true;
   Contribution& c = wave_.contribution(p, q.light);

@@ -139,8 +139,9 @@ class Wave {
   // Of what a warm surface sends out.
   const PolarisedEvent* polarise_emission(uint32_t p);
   // Of the air's own light along a way, `radiance` as the scalar field has it: returns that of the vector field, which
-  // stays until the next way.
-  const float* polarise_air(Vec3 from, Dir d, double distance, const float* radiance);
+  // stays until the next way. sky: light is scattered on it, and one of its neighbours will do.
+  enum class AirWay { exact, sky };
+  const float* polarise_air(AirWay way, Vec3 from, Dir d, double distance, const float* radiance);
   // A contribution brings that light: before its scattering, where it has one.
   void lit_by_air(Contribution& c);
 

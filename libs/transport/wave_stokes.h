@@ -45,12 +45,14 @@ const PolarisedEvent* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_em
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-const float* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_air(Vec3 from, Dir d, double distance,
+const float* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_air(AirWay way, Vec3 from, Dir d, double distance,
                                                                          const float* radiance) {
   auto& air = polarisation.air;
   if constexpr (requires { space.polarised_air(); }) {
     for (std::vector<float>* row : {&air.I, &air.Q, &air.U}) row->resize(bins);
-    air.unknown = space.polarised_air().along(from, d, distance, {air.I, air.Q, air.U});
+    const PolarisedAir::Light to{air.I, air.Q, air.U};
+    air.unknown = way == AirWay::sky ? space.polarised_air().sky(from, d, to)
+                                     : space.polarised_air().along(from, d, distance, to);
     for (size_t i = 0; i < bins; ++i) {
       air.I[i] = std::max(0.0f, radiance[i] + air.I[i]);
       const float over = air.I[i] > 0 ? 1 / air.I[i] : 0;
