@@ -15,9 +15,9 @@ void check_stokes(const Simulation& sim, const Sensor& sensor) {
         "sensor '" + sensor.name() + "' sees polarisation, and nothing would say what part of its light is known",
         "add the channel `depolarised`");
   const SourceSpecs& sources = sim.sources;
-  if (sources.has_air() && !(sources.air && sources.air->scattering == AirScattering::traced))
+  if (sources.has_air() && !sources.air)
     throw Error("sensor '" + sensor.name() + "' sees polarisation, and the light of this air is known without it",
-                "trace it: `scattering: traced` for air with a `profile`; or leave the air out");
+                "give air with a `profile`; or leave the air out");
   if (sim.output.type == OutputSpec::Type::uint16)
     throw Error("sensor '" + sensor.name() + "': Q, U and V have signs, which whole numbers of 16 bits do not hold",
                 "output type: float32 or float64");

@@ -127,19 +127,8 @@ class BinSolver {
     }
     problem_.beam = beam_through(depths_[b], beams_[b].direction.z, beams_[b].irradiance[bin_]);
   }
-  // of_levels: depth of a beam at the levels.
   DiffuseBeam beam_through(const std::vector<double>& of_levels, double cosine, float irradiance) {
-    depth_.resize(layers_.size() + 1);
-    for (size_t n = 0; n <= layers_.size(); ++n) depth_[n] = of_levels[(column_.layers() - n) * column_.bins + bin_];
-    secants_.assign(layers_.size(), 1 / std::max(cosine, 0.05));
-    tops_.assign(layers_.size(), -1);
-    for (size_t n = 0; n < layers_.size(); ++n) {
-      const double fall = depth_[n + 1] - depth_[n];
-      if (layers_[n].depth > 1e-12 && std::isfinite(fall) && fall != 0) secants_[n] = fall / layers_[n].depth;
-      if (!std::isfinite(depth_[n])) tops_[n] = 0;
-    }
-    if (std::isfinite(depth_[0])) tops_[0] = std::exp(-depth_[0]);
-    return {irradiance, cosine, secants_, tops_};
+    return beam_.through(column_, of_levels, bin_, cosine, irradiance);
   }
   // Mean of the diffuse light of all directions in a layer.
   double mean_light(size_t n) const {
@@ -265,7 +254,8 @@ class BinSolver {
       const int end = side == 0 ? first : 1 - first;
       const DiffusePlace place{layer_index, end == 0 ? 1.0 : 0.0};
       const double beam = beams_.empty() ? 0 : solver_.beam(place),
-                   left = beams_.empty() ? 0 : problem_.beam.irradiance * std::exp(-depth_[n + (end == 0 ? 1 : 0)]);
+                   left =
+                       beams_.empty() ? 0 : problem_.beam.irradiance * std::exp(-beam_.depth[n + (end == 0 ? 1 : 0)]);
       source[side] = (scale > 0 ? (own(n, end, direction) + scattered * beam) / scale : 0) + solver_.emission(place);
       more[side] = scattered * std::max(0.0, beam - left);
     }
@@ -309,7 +299,8 @@ class BinSolver {
   const SpectralState& state_;
   size_t bin_ = 0;
   bool peaked_ = false;
-  std::vector<double> depth_, secants_, tops_, air_, phase_;
+  LayerBeam beam_;
+  std::vector<double> air_, phase_;
   std::vector<double> ground_, own_;
   std::optional<RoundLight> round_;
   AirSources even_, gain_;  // means over azimuth, over scaled depth: all sources; what a round Earth adds

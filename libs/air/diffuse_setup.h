@@ -7,6 +7,7 @@
 #include "air/beam_table.h"
 #include "air/column.h"
 #include "air/diffuse_source.h"
+#include "air/discrete_ordinates.h"
 #include "air/round_light.h"
 
 namespace suite {
@@ -19,6 +20,17 @@ struct AirBeam {
 
 // Directions of the table, denser towards the horizon, where ways are long.
 DiffuseSource::Axes diffuse_axes(const AirColumn& column, std::span<const AirBeam> beams);
+
+// Depth of a beam at the levels over a place, [level][bin], infinite in the shadow of the Earth. cosine: of its zenith
+// angle there.
+std::vector<double> level_depths(const AirColumn& column, double cosine, const BeamTable& table);
+// The same of one bin as plane layers take it, counted from the top down to the column's ground.
+struct LayerBeam {
+  std::vector<double> depth, secants, tops;  // of the levels; of the layers
+  // Valid until the next call.
+  DiffuseBeam through(const AirColumn& column, const std::vector<double>& of_levels, size_t bin, double cosine,
+                      float irradiance);
+};
 
 // Depths of beams at the levels over a place, infinite in the shadow of the Earth; each [level][bin].
 struct BeamDepths {

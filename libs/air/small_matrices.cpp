@@ -31,7 +31,8 @@ void multiply_fixed(const double* a, const double* b, double* product) {
 
 void multiply_any(const double* a, const double* b, double* product, int n) {
   for (int i = 0; i < n; ++i) {
-    double row[kMostRows] = {};
+    double row[kMostRows];
+    std::fill_n(row, n, 0.0);
     for (int k = 0; k < n; ++k) {
       const double f = a[i * n + k];
       for (int j = 0; j < n; ++j) row[j] += f * b[k * n + j];

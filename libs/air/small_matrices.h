@@ -1,6 +1,6 @@
 // Dense matrices of a few rows, as the discrete ordinates need them: products, factors and the symmetric eigenproblem.
 //
-// Shapes: n x n, row by row, n = 1..32; vectors of n. Nothing allocates. A factor is what factor_* left in place.
+// Shapes: n x n, row by row, n = 1..64; vectors of n. Nothing allocates. A factor is what factor_* left in place.
 // Based on: H. Bowdler, R. S. Martin, C. Reinsch, J. H. Wilkinson, "The QR and QL algorithms for symmetric matrices",
 // Numer. Math. 11, 1968; R. S. Martin, C. Reinsch, J. H. Wilkinson, "Householder's tridiagonalization of a symmetric
 // matrix", same volume; G. Golub, C. Van Loan, "Matrix computations", 1996, chapters 3 and 4.
@@ -8,7 +8,7 @@
 
 namespace suite::small {
 
-constexpr int kMostRows = 32;
+constexpr int kMostRows = 64;
 
 void multiply(const double* a, const double* b, double* product, int n);
 // y = a x, y = a^T x.

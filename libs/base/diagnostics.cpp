@@ -58,6 +58,9 @@ constexpr DiagnosticKind kKinds[] = {
      "nothing, unless reflectors are endless or many and small: then a rough surface or a wider source"},
     {Dr::caustics_not_found, kWarning, "caustics of collimated or point sources are not found and not estimated",
      "give the surface a roughness (ggx) or the source a size"},
+    {Dr::stokes_techniques, kInfo,
+     "a sensor of polarisation: the residual estimator of the air is off, the air shines as over an even ground",
+     "nothing, unless the ground varies or shadows matter: then `scattering: traced`"},
     {Dr::stokes_depolarised, kWarning, "more than 1 % of a sensor's light passed what no Mueller matrix is known of",
      "give the materials models that polarise, or read the degree of polarisation as a lower bound"},
     // Interfaces and media.

@@ -34,6 +34,7 @@ enum class Dr : int {
   refracted_light_not_found = 205,
   caustics_by_photons = 206,
   caustics_not_found = 207,
+  stokes_techniques = 208,
   stokes_depolarised = 209,
   interfaces_coincide = 301,
   boundary_without_interface = 302,

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <mutex>
 #include <utility>
 
 #include "air/beam_table.h"
 #include "air/column.h"
 #include "air/diffuse_field.h"
+#include "base/parallel.h"
 #include "light/air_loops.h"
 #include "light/air_scratch.h"
 #include "light/air_vertices.h"
 #include "light/beam_light.h"
+#include "light/polarised_air.h"
 #include "light/sky_table.h"
 #include "light/thin_bins.h"
 #include "math/quick_angle.h"
@@ -40,6 +44,7 @@ class StratifiedAir final : public Atmosphere {
     if (spec.scattering == AirScattering::diffuse)
       diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, &even);
     tabulate_sky();
+    make_polarised_ = [this, spec, state, from] { return polarised(spec, state, from); };
     if (diffuse_ && spec.adjacency) place_vertices(state, std::move(even.up));
   }
 
@@ -218,6 +223,10 @@ class StratifiedAir final : public Atmosphere {
       for (size_t i = 0; i < bins_; ++i) to[i] += corners.weight[c] * 0.5f * (bottom[i] + top[i]);
     }
   }
+  const PolarisedAir* polarisation() const override {
+    std::call_once(polarised_once_, [this] { isolated([this] { polarised_ = make_polarised_(); }); });
+    return polarised_.get();
+  }
   size_t beams() const override { return beams_.size(); }
   void beam(size_t b, size_t l, Vec3 from, Dir d, BeamAlong along) const override {
     Scratch& s = scratch();
@@ -236,6 +245,17 @@ class StratifiedAir final : public Atmosphere {
     thread_local Scratch s;
     s.fit(bins_, beams_.size(), column_.kinds.size());
     return s;
+  }
+
+  std::unique_ptr<const PolarisedAir> polarised(const AirSpec& spec, const SpectralState& state,
+                                                std::span<const AirBeam> from) const {
+    std::shared_ptr<const PolarisedSource> again;
+    if (diffuse_) {
+      std::vector<std::vector<double>> depths;
+      for (size_t b = 0; b < from.size(); ++b) depths.push_back(level_depths(column_, from[b].direction.z, tables_[b]));
+      again = solve_polarised_source(spec, column_, state, from, depths);
+    }
+    return std::make_unique<const PolarisedAir>(column_, beams_, once_, std::move(again));
   }
 
   // What a layer emits at its ends, over its extinction; and which layers shine at all.
@@ -339,6 +359,9 @@ class StratifiedAir final : public Atmosphere {
   std::vector<uint8_t> emits_;   // per layer
   std::unique_ptr<SkyTable> sky_, view_;
   std::unique_ptr<const AirVertices> vertices_;
+  std::function<std::unique_ptr<const PolarisedAir>()> make_polarised_;
+  mutable std::once_flag polarised_once_;
+  mutable std::unique_ptr<const PolarisedAir> polarised_;
 };
 
 }  // namespace

@@ -274,8 +274,8 @@ class Job {
     log.new_optics = kits_->optics_bakes() > bakes;
     check_capture(sensor, capture, kit);
     if (options_.diagnose)
-      for (const Diagnostic& d :
-           diagnose_light_paths(*tracer_, sources_, *kit.optics, options_.pipeline, goals_of(item).all.max_paths))
+      for (const Diagnostic& d : diagnose_light_paths(*tracer_, sources_, *kit.optics, options_.pipeline,
+                                                      goals_of(item).all.max_paths, sensor))
         if (diagnosed_.insert(d.text).second) options_.diagnose(d);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;

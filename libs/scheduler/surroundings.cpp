@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "math/sampling.h"
 #include "scene/scene.h"
+#include "transport/channels.h"
 #include "transport/lost_light.h"
 #include "transport/media/bodies.h"
 #include "transport/refracted_ray.h"
@@ -310,9 +311,15 @@ std::vector<Diagnostic> diagnose_surroundings(const Tracer& tracer, const Optics
 }
 
 std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
-                                             const PipelineOptions& options, uint32_t paths) {
+                                             const PipelineOptions& options, uint32_t paths, const Sensor& sensor) {
   std::vector<Diagnostic> all =
       diagnose_lost_light(tracer.scene(), sources, optics, options, paths, tracer.periodic().has_value());
+  if (ChannelPlan(sensor.channels()).of_stokes() && sources.air && sources.air->scattering == AirScattering::diffuse &&
+      sources.air->adjacency)
+    all.push_back({Dr::stokes_techniques,
+                   "sensor '" + sensor.name() +
+                       "' sees polarisation: the residual estimator of the air carries no Mueller matrices and is off; "
+                       "the air shines as over an even ground, without shadows in it"});
   for (Diagnostic& d : diagnose_surroundings(tracer, optics)) all.push_back(std::move(d));
   return all;
 }

@@ -162,6 +162,16 @@ void PathKernel<Wave>::fly_one(size_t slot) {
     if (const double density = wave_.space.sky_density(path.direction);
         density > 0 && wave_.options.explicit_sources && path.last_density > 0)
       c.scale = static_cast<float>(Estimator::by_chance(sky->nature(), path.before * density / path.last_density));
+  if constexpr (Wave::kStokes)
+    if (c.radiance && Space::kEmitter == kFromAir) {
+      // In a mirror neighbouring directions would be told apart.
+      const bool scattered = path.last_density > 0 && length == std::numeric_limits<double>::infinity();
+      c.radiance = wave_.polarise_air(scattered ? Wave::AirWay::sky : Wave::AirWay::exact, path.origin, path.direction,
+                                      length, c.radiance);
+      wave_.lit_by_air(c);
+      wave_.contribute();
+      return wave_.hand_over();  // the next way has other light
+    }
   if (c.radiance) return wave_.contribute();
   wave_.throughputs.give_back(p);
   if (!flight.through.spectrum) wave_.throughputs.give_back(p);

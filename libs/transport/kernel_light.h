@@ -122,6 +122,8 @@ const float* PathKernel<Wave>::spectrum_of(const Question& q, size_t i) {
   if (q.light == kFromAir) {
     const float* const radiance = wave_.space.sky_radiance(ray, wave_.transmission, own);
     if (radiance != own.data()) wave_.throughputs.give_back(p);
+    if constexpr (Wave::kStokes)
+      return wave_.polarise_air(Wave::AirWay::sky, ray.origin, q.direction, wave_.sight_rays.distance()[i], radiance);
     return radiance;
   }
   std::fill(own.begin(), own.end(), 0.0f);
@@ -199,7 +201,10 @@ void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
     const double off = node.event ? 0 : step_along(wave_.hits[node.slot], q.direction);
     c.arrival += wave_.space.optical_way(p, i, distance + off);
   }
-  if constexpr (Wave::kStokes) c.polarised = wave_.polarise(node, q.direction);
+  if constexpr (Wave::kStokes) {
+    c.polarised = wave_.polarise(node, q.direction);
+    if (of_air) wave_.lit_by_air(c);
+  }
   wave_.contribute();
   if constexpr (Wave::kStokes) wave_.hand_over();  // the next light has other matrices
 }

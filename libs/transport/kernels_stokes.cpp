@@ -15,6 +15,9 @@ std::unique_ptr<PathTracing> make_stokes_kernel(const KernelChoice& choice, cons
   if (choice.space == KernelChoice::Space::field)
     return std::make_unique<PathKernel<Wave<AnySurfaces, FieldSpace, StokesThroughputs, StandardEstimator>>>(
         c, width, throughputs, sink);
+  if (choice.space == KernelChoice::Space::air)
+    return std::make_unique<PathKernel<Wave<AnySurfaces, AirSpace, StokesThroughputs, StandardEstimator>>>(
+        c, width, throughputs, sink);
   SUITE_CHECK(choice.space == KernelChoice::Space::nothing);
   return std::make_unique<PathKernel<Wave<AnySurfaces, NothingSpace, StokesThroughputs, StandardEstimator>>>(
       c, width, throughputs, sink);

@@ -47,9 +47,12 @@ Pipeline::~Pipeline() = default;
 void Pipeline::check_stokes() const {
   if (options_.method == Method::paper)
     throw Error("the paper's estimator knows no polarisation", "render Stokes vectors by the standard method");
-  if (environment_.atmosphere)
+  if (environment_.atmosphere && !optics_.media().empty())
+    throw Error("the light of air around media is known without its polarisation",
+                "Stokes vectors need the air traced: `scattering: traced` for `air`; or no media, or no air");
+  if (environment_.atmosphere && !environment_.atmosphere->polarisation())
     throw Error("the light of this air is known without its polarisation",
-                "Stokes vectors need the air traced: `scattering: traced` for `air`, or no air");
+                "Stokes vectors need air with a `profile`, or no air");
 }
 
 namespace {

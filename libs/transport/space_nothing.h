@@ -151,6 +151,8 @@ class AirSpace : public NothingSpace {
   const float* sky_radiance(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
     return air_.sky_radiance(ray.origin, ray.direction, scratch, radiance);
   }
+  // Of an air that knows it.
+  const PolarisedAir& polarised_air() const { return *air_.polarisation(); }
   bool dims(const Ray& ray, double distance, size_t, std::span<float> transmission, std::span<double>) {
     air_.transmittance(ray.origin, ray.direction, distance, transmission);
     return true;

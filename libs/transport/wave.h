@@ -41,6 +41,10 @@ struct HeroSet {
 struct PolarisedScratch {
   SuffixMatrices suffix;
   Interaction at;
+  struct {
+    std::vector<float> I, Q, U;  // Q and U over I
+    double unknown = 0;
+  } air;  // light along the last way through it
 };
 struct NoPolarisedScratch {
   NoMatrices suffix;
@@ -144,6 +148,12 @@ class Wave {
   void polarise_further(const Hit& hit, Dir out, Dir in, int lobe, int knot, double time);
   // Of what a warm surface sends out.
   const PolarisedEvent* polarise_emission(uint32_t p);
+  // Of the air's own light along a way, `radiance` as the scalar field has it: returns that of the vector field, which
+  // stays until the next way. sky: light is scattered on it, and one of its neighbours will do.
+  enum class AirWay { exact, sky };
+  const float* polarise_air(AirWay way, Vec3 from, Dir d, double distance, const float* radiance);
+  // A contribution brings that light: before its scattering, where it has one.
+  void lit_by_air(Contribution& c);
 
  private:
   void list_lights();

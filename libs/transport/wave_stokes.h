@@ -1,5 +1,8 @@
 // Definitions of wave.h: the Mueller matrices of events, for algebras that carry polarisation.
 #pragma once
+#include <algorithm>
+
+#include "light/polarised_air.h"
 #include "transport/wave.h"
 
 namespace suite {
@@ -48,6 +51,43 @@ const PolarisedEvent* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_em
   polarisation.suffix.take(
       surfaces.emission_mueller(p, -path.direction, {u[0], u[1]}, u[2], path.knot, polarisation.suffix.next(bins)));
   return polarisation.suffix.event();
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+const float* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_air(AirWay way, Vec3 from, Dir d, double distance,
+                                                                         const float* radiance) {
+  auto& air = polarisation.air;
+  if constexpr (requires { space.polarised_air(); }) {
+    for (std::vector<float>* row : {&air.I, &air.Q, &air.U}) row->resize(bins);
+    const PolarisedAir::Light to{air.I, air.Q, air.U};
+    air.unknown = way == AirWay::sky ? space.polarised_air().sky(from, d, to)
+                                     : space.polarised_air().along(from, d, distance, to);
+    for (size_t i = 0; i < bins; ++i) {
+      air.I[i] = std::max(0.0f, radiance[i] + air.I[i]);
+      const float over = air.I[i] > 0 ? 1 / air.I[i] : 0;
+      air.Q[i] *= over, air.U[i] *= over;
+    }
+    return air.I.data();
+  }
+  return radiance;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void Wave<Surfaces, Space, Throughputs, Estimator>::lit_by_air(Contribution& c) {
+  if constexpr (requires { space.polarised_air(); }) {
+    const auto& air = polarisation.air;
+    SuffixMatrices& suffix = polarisation.suffix;
+    if (!c.polarised) suffix.begin();
+    const std::span<Mueller> light = suffix.next(bins);
+    for (size_t i = 0; i < bins; ++i) {
+      light[i] = Mueller{};
+      const double s[] = {1, air.Q[i], air.U[i], 0};
+      for (int k = 0; k < 4; ++k) light[i](k, 0) = s[k];
+    }
+    suffix.take({false, 0});
+    c.polarised = suffix.event();
+    c.unknown = static_cast<float>(air.unknown);
+  }
 }
 
 }  // namespace suite

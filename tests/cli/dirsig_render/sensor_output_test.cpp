@@ -325,6 +325,8 @@ TEST_F(SensorOutput, StokesVectorsHaveBandsOfTheirOwn) {
               HasSubstr("Q, U and V are no light that has a temperature"));
   EXPECT_THAT(refused("atmosphere: {scene_height_m: 0}\n" + camera + "stokes: linear}\n", "air"),
               HasSubstr("sees polarisation, and the light of this air is known without it"));
+  render("atmosphere: {profile: us_standard, scattering: single}\n" + camera + "stokes: linear}\n", "real_air");
+  EXPECT_TRUE(there("real_air/eye_polarisation.img"));
 }
 // Grooves have no Mueller matrix: all of what is seen counts as depolarised, which is said.
 TEST_F(SensorOutput, LightOfUnknownPolarisationIsToldOf) {

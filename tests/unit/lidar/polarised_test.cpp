@@ -84,10 +84,9 @@ TEST(LidarPolarised, OthersDepolarise) {
 
 // A laser's Stokes vector is known along straight ways: water that bends them is refused, and says so.
 TEST(LidarPolarised, BentWaysAreRefused) {
-  const auto pond = scene_of(
-      {quad(100, -2, 0), quad(100, 0, 1)},
-      {material("bed", lambert(0.3)),
-       material("water", {"dielectric", {}, {{"index", Curve::constant(1.33)}}, {}, nullptr})});
+  const auto pond = scene_of({quad(100, -2, 0), quad(100, 0, 1)},
+                             {material("bed", lambert(0.3)),
+                              material("water", {"dielectric", {}, {{"index", Curve::constant(1.33)}}, {}, nullptr})});
   DownLidar lidar = above(100, {1, 1, 0, 0}, {linear_0});
   lidar.orders = 2;
   EXPECT_NE(message_of([&] { receive(pond, lidar); }).find("surfaces that refract"), std::string::npos);
