@@ -161,18 +161,18 @@ RELATIONS = {r.name: r for r in (
     Relation("body_of_the_same", same_as(change.body_of_the_same), 2.5, frozen("wants_media")),
     Relation("bystander", same_as(change.bystander), 2),
     Relation("rigid_motion", same_as(change.rigid_motion), 3, frozen("moved")),
-    Relation("regrouping", same_as(change.regroup), 2),
+    Relation("regrouping", same_as(change.regroup), 2, frozen("stars")),
     Relation("splitting", same_as(change.split), 2),
     Relation("scaled", same_as(change.scaled), 2, frozen("no_air", "no_profile", "moved")),
-    Relation("superposition", superposition, 3),
+    Relation("superposition", superposition, 3, frozen("stars")),
     Relation("substitution", same_as(rewrite.substitute), 4),
     Relation("switches", same_as(change.switches), 2),
     Relation("time_shift", same_as(change.time_shift), 1, frozen("later")),
-    Relation("channels", channels, 1, frozen("wants_camera")),
+    Relation("channels", channels, 1, frozen("wants_camera", "stars")),
     Relation("sensors_agree", sensors_agree, 2, frozen("wants_camera")),
     Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "moved", "still_world", "no_room", "no_profile")),
     Relation("reciprocity", reciprocity, 2, frozen("reciprocal", "still_world", "no_profile"), seconds=5 * SECONDS),
-    Relation("same_bytes", same_bytes, 1),
+    Relation("same_bytes", same_bytes, 1, frozen("stars")),
 )}
 
 
