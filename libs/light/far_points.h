@@ -18,8 +18,8 @@ struct FarPoint {
   double v = 0;      // magnitude
   double scale = 1;  // of its light
   double kelvin = 0;
-  std::shared_ptr<const Curve> shape = {};  // over that at 0.55 um; null = a blackbody's of `kelvin`
-  bool twinkles = true;  // it has no disk
+  std::shared_ptr<const Curve> shape = {};         // over that at 0.55 um; null = a blackbody's of `kelvin`
+  bool twinkles = true;                            // it has no disk
   std::shared_ptr<const SunlitPoint> moving = {};  // a satellite, whose light is its share of the Sun's
   Dir direction;  // towards it at the moment of FarPoints, scene ENU, lifted by the air of the place
 };
@@ -32,8 +32,8 @@ struct PointLook {
 
 struct FarPoints {
   std::vector<FarPoint> points;
-  Dir pole;            // they turn about it with the Earth, scene ENU
-  double seconds = 0;  // simulation time of the directions
+  Dir pole;                                    // they turn about it with the Earth, scene ENU
+  double seconds = 0;                          // simulation time of the directions
   std::optional<uint64_t> scintillation = {};  // seed; nothing: they do not twinkle
   double height = 0;                           // m above sea level, of the scene's origin
 

@@ -52,7 +52,8 @@ bool FlatMirrors::add(const Tracer& tracer, uint32_t number, const TracedObject&
     const bool level = kind == PrimitiveKind::plane || kind == PrimitiveKind::disk;
     if (!level && kind != PrimitiveKind::box) return false;
     if (!add_normal(normalized(place.normal({0, 0, 1})))) return false;
-    return level || (add_normal(normalized(place.normal({1, 0, 0}))) && add_normal(normalized(place.normal({0, 1, 0}))));
+    return level ||
+           (add_normal(normalized(place.normal({1, 0, 0}))) && add_normal(normalized(place.normal({0, 1, 0}))));
   }
   const Mesh& mesh = scene.meshes[object.mesh];
   if (mesh.triangle_count() > kMostTriangles) return false;

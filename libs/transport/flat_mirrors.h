@@ -1,6 +1,7 @@
-// Flat smooth surfaces at rest, in which far points (stars) have images whose places on a focal plane are known: mirrors,
-// calm water, panes. A path that leaves the scene after smooth surfaces alone knows by its line whether it looks along
-// such an image: a line of sight, turned by one flat mirror at most, to which all else that it passed was parallel.
+// Flat smooth surfaces at rest, in which far points (stars) have images whose places on a focal plane are known:
+// mirrors, calm water, panes. A path that leaves the scene after smooth surfaces alone knows by its line whether it
+// looks along such an image: a line of sight, turned by one flat mirror at most, to which all else that it passed was
+// parallel.
 //
 // Assumes: surfaces of mesh or exact planes and boxes without vertex normals and bump maps, at rest, whose normals have
 // few directions in all (kMost); images in what is curved, moves or has more are left to chance, and so are those that

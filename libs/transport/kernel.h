@@ -125,9 +125,9 @@ class PathKernel final : public PathTracing {
   Wave wave_;
   Techniques<Wave> techniques_;
   const bool keep_first_;
-  const bool draws_;  // something decides by Ray::draw
+  const bool draws_;                  // something decides by Ray::draw
   const FlatMirrors* const mirrors_;  // null: far points come to sensors straight ahead alone
-  const bool above_;  // some light may be seen by sensors above the air
+  const bool above_;                  // some light may be seen by sensors above the air
   // Of each path.
   std::vector<FirstMeeting> firsts_;
   std::vector<SensorRay::Receiver> receivers_;

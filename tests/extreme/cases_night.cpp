@@ -20,7 +20,7 @@ Dir towards_star() { return sphere().without_air(kStar.place); }
 
 // Overcast starlight over snow: cloud and snow that take nothing leave the sky's radiance everywhere.
 double off_under_cloud(double depth) {
-  Medium cloud = medium(Curve::constant(depth), Curve::constant(1));
+  Medium cloud = medium(Curve::constant(0), Curve::constant(depth));
   auto scene = slab_scene(cloud, 1);
   auto own = std::make_shared<Scene>(*scene);
   own->materials.push_back(material("snow", lambert(1)));
@@ -192,7 +192,7 @@ std::vector<Case> frames() {
        "1",
        0.01,
        [](N, double x) { return off_in_exposure(x); },
-       {"exposure", "s", 1e-6, 3600, 6},
+       {"exposure", "s", 1e-6, 3600, 6.25689031},
        {}},
   };
 }

@@ -1,11 +1,10 @@
 // The Moon as a far disk of uniform radiance: its irradiance from the Sun's, its phase and its distance.
 //
-// Assumes: the disk-integrated irradiance is that of the ROLO model 311g; the disk shows no maria, and a terminator only
-// where that is asked for (phased_disk.h), else the mean radiance everywhere, which matters to what resolves half a
-// degree. Between the 32 bands the
-// reflectance is linear in wavelength, beyond them constant. The fit holds for phase angles of 1.55 to 97 degrees and
-// is extrapolated to 0..150 (beyond, the Moon gives no light). Based on: H. H. Kieffer & T. C. Stone, "The spectral
-// irradiance of the Moon", Astron. J. 129, 2005, equations 10 and 11, table 4.
+// Assumes: the disk-integrated irradiance is that of the ROLO model 311g; the disk shows no maria, and a terminator
+// only where that is asked for (phased_disk.h), else the mean radiance everywhere, which matters to what resolves half
+// a degree. Between the 32 bands the reflectance is linear in wavelength, beyond them constant. The fit holds for phase
+// angles of 1.55 to 97 degrees and is extrapolated to 0..150 (beyond, the Moon gives no light). Based on: H. H. Kieffer
+// & T. C. Stone, "The spectral irradiance of the Moon", Astron. J. 129, 2005, equations 10 and 11, table 4.
 #pragma once
 #include "light/kinds/sun.h"
 

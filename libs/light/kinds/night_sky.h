@@ -8,11 +8,11 @@
 namespace suite {
 
 struct NightSkyLightSpec : NightSkySpec {
-  SourceTime time;                     // second 0
-  std::optional<Geodetic> place = {};  // else the scene's origin
+  SourceTime time;                             // second 0
+  std::optional<Geodetic> place = {};          // else the scene's origin
   std::optional<uint64_t> scintillation = {};  // seed; nothing: stars do not twinkle
   std::vector<SatelliteSpec> satellites = {};
-  bool in_view = true;                 // sensors that can put stars on their focal plane do (far_points.h)
+  bool in_view = true;  // sensors that can put stars on their focal plane do (far_points.h)
 };
 LightSpecPtr make_light(NightSkyLightSpec spec);
 // From text (night_sky_read.cpp). Located Error for anything wrong.

@@ -2,8 +2,8 @@
 //
 // Assumes: a layer shines evenly between two heights and weakens nothing; its shells are ellipsoids whose semi-axes are
 // those of WGS84 plus a height (at most 30 m from true heights). Light grows with the way within a shell, over its
-// thickness: at the zenith it is that of the thin layer of airglow.h, 1 / cosine of the slant elsewhere, and finite along
-// the limb.
+// thickness: at the zenith it is that of the thin layer of airglow.h, 1 / cosine of the slant elsewhere, and finite
+// along the limb.
 #pragma once
 #include <span>
 #include <vector>

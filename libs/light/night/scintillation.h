@@ -1,9 +1,9 @@
 // Twinkling: how much a star's light differs from its mean as telescopes on the ground see it.
 //
-// Assumes: apertures larger than the cells of turbulence (some 5 cm; smaller ones see less than this says) and exposures
-// of at least 10 ms, as which shorter ones count; all wavelengths alike. Known to a factor of 2 from night to night.
-// Based on: A. T. Young, "Photometric error analysis VI: confirmation of Reiger's theory of scintillation", Astron. J.
-// 72, 1967.
+// Assumes: apertures larger than the cells of turbulence (some 5 cm; smaller ones see less than this says) and
+// exposures of at least 10 ms, as which shorter ones count; all wavelengths alike. Known to a factor of 2 from night to
+// night. Based on: A. T. Young, "Photometric error analysis VI: confirmation of Reiger's theory of scintillation",
+// Astron. J. 72, 1967.
 #pragma once
 #include <cstdint>
 

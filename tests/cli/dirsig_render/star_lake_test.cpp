@@ -31,7 +31,8 @@ TEST_F(StarLake, WaterMirrorsStars) {
   for (std::string line; std::getline(lines, line);) {
     char name[32];
     Seen s{};
-    if (std::sscanf(line.c_str(), "%31[^,],%*f,%lf,%lf,%*f,%lf", name, &s.column, &s.row, &s.green) == 4) stars[name].push_back(s);
+    if (std::sscanf(line.c_str(), "%31[^,],%*f,%lf,%lf,%*f,%lf", name, &s.column, &s.row, &s.green) == 4)
+      stars[name].push_back(s);
   }
   // The camera looks up by atan(1.5 / 100); rows are 0.08 mm at 5.5 mm.
   size_t pairs = 0;

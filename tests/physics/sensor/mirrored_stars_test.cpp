@@ -117,8 +117,8 @@ TEST(MirroredStars, PanesMirrorAtBothFaces) {
   EXPECT_NEAR(seen[0].irradiance / above(kStar), R + R * (1 - R) * (1 - R), 1e-4);
 }
 
-// Cells of 3 degrees no longer shine in what has images of its stars: the one pixel of the image is all there is. In a curved
-// mirror they do, and none is listed there.
+// Cells of 3 degrees no longer shine in what has images of its stars: the one pixel of the image is all there is. In a
+// curved mirror they do, and none is listed there.
 TEST(MirroredStars, NoneIsCountedTwice) {
   const Dir star = star_now();
   const auto beside = [&](const std::shared_ptr<Scene>& scene, size_t listed) {

@@ -235,10 +235,10 @@ double energy_by_platform(double past, const std::string& readout) {
   return energy(kit.shots[0], 1e4) / above(kStar);
 }
 
-// Electrons of a star in a lens of 50 mm, a throughput of 0.8, a quantum efficiency of 0.6, 0.5 to 0.9 um: for V = 0 and
-// an even spectrum 3.631e-8 W/(m2 um) times 0.28 um2 / (h c) times the aperture are 4.82e7 a second, and 764 for V = 12.
-// A star of 6000 K by its own spectrum; G# = (1 + 4 N^2) / (pi tau), by which the camera counts, gathers 0.4 % less than
-// the aperture at f/8.
+// Electrons of a star in a lens of 50 mm, a throughput of 0.8, a quantum efficiency of 0.6, 0.5 to 0.9 um: for V = 0
+// and an even spectrum 3.631e-8 W/(m2 um) times 0.28 um2 / (h c) times the aperture are 4.82e7 a second, and 764 for V
+// = 12. A star of 6000 K by its own spectrum; G# = (1 + 4 N^2) / (pi tau), by which the camera counts, gathers 0.4 %
+// less than the aperture at f/8.
 TEST(Stars, ElectronsOfAnAperture) {
   constexpr double kHc = 1.98644586e-25;  // J m
   const double gathers = kPi / 4 * 0.05 * 0.05 * 0.8 * 0.6 * 1e-6 / kHc;
@@ -247,14 +247,15 @@ TEST(Stars, ElectronsOfAnAperture) {
   const Dir star = sphere().without_air(kStar.place);
   PlatformKit kit;
   kit.frame = SceneFrame(kPlace);
-  kit.render(ground(), stars_alone({kStar}),
-             strf("kind: platform\nmotion: {kind: straight, position_m: [0, 0, 2], heading_deg: %.12g, speed_m_s: 0}\n"
-                  "tasks: [{start: 0, stop: 0}]\ninstruments:\n  - name: i\n    rotate_deg: [%.12g, 0, 0]\n",
-                  std::atan2(star.x, star.y) / kDegree, 90 + std::asin(star.z) / kDegree) +
-                 "    focal_length_mm: 400\n    f_number: 8\n    throughput: 0.8\n"
-                 "    arrays:\n      - {name: a, columns: 20, rows: 20, pitch_um: 10, paths: 4, integration_time_s: 0.5, "
-                 "bands: [{name: v, center_um: 0.7, fwhm_um: 0.4, shape: rectangular}], detector: {quantum_efficiency: "
-                 "0.6, gain_e_per_dn: 1000}}\n");
+  kit.render(
+      ground(), stars_alone({kStar}),
+      strf("kind: platform\nmotion: {kind: straight, position_m: [0, 0, 2], heading_deg: %.12g, speed_m_s: 0}\n"
+           "tasks: [{start: 0, stop: 0}]\ninstruments:\n  - name: i\n    rotate_deg: [%.12g, 0, 0]\n",
+           std::atan2(star.x, star.y) / kDegree, 90 + std::asin(star.z) / kDegree) +
+          "    focal_length_mm: 400\n    f_number: 8\n    throughput: 0.8\n"
+          "    arrays:\n      - {name: a, columns: 20, rows: 20, pitch_um: 10, paths: 4, integration_time_s: 0.5, "
+          "bands: [{name: v, center_um: 0.7, fwhm_um: 0.4, shape: rectangular}], detector: {quantum_efficiency: "
+          "0.6, gain_e_per_dn: 1000}}\n");
   double electrons = 0, expected = 0;
   for (const double n : kit.shots.at(0).products.at(0).values) electrons += n;
   const Curve shape = star_shape(kStar.kelvin);
