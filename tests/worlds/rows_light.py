@@ -73,7 +73,7 @@ def night_sky(d):
     """As bright as lamps. Its stars are spread, for sensors differ in which of them see stars as points, but where a relation bears that ('stars')."""
     scale = d.u(1e5, 4e5)
     parts = [part for part in PARTS if d.chance(0.75)] or ["airglow"]
-    spec = {"time_utc": d.one("2026-03-20T23:00:00Z", "1951-07-02T01:00:00Z", "2099-12-05T12:00:00Z"),
+    spec = {"time_utc": d.one("2026-03-20T23:00:00Z", "1973-07-02T01:00:00Z", "2099-12-05T12:00:00Z"),
             "place": {"latitude_deg": d.u(-70, 70), "longitude_deg": d.u(-170, 170)}, "parts": parts, "solar_flux_sfu": d.u(60, 300),
             "resolve_stars": "in_view" if "stars" in d.traits and d.chance(0.5) else "none"}
     if d.maybe("city_glow", 0.4):
