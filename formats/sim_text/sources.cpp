@@ -14,6 +14,7 @@
 #include "formats/sim_text/lamp_map.h"
 #include "formats/sqt/sqt.h"
 #include "formats/star_catalogue/star_catalogue.h"
+#include "formats/tle/tle.h"
 #include "optics/phase_function.h"
 #include "spectral/lamp_spectra.h"
 
@@ -84,6 +85,13 @@ std::vector<CatalogueStar> read_stars(const Params& file) {
   if (!file_exists(path))
     throw file.error("there is no star catalogue '" + path + "'", "'builtin', 'none', or a CSV file");
   return read_star_catalogue(path);
+}
+
+OrbitElements read_orbit(const Params& p) {
+  const auto lines = p.find("tle_lines");
+  if (!lines) return read_tle_of(p.at("tle").as_path(), p.text("satellite")).elements;
+  if (lines->size() != 2) throw lines->error("'tle_lines' are the two lines of an element set");
+  return parse_tle((*lines)[0].as_text() + "\n" + (*lines)[1].as_text() + "\n", lines->where().file).at(0).elements;
 }
 
 ModelSpec read_phase(const Params& p) {
@@ -230,6 +238,7 @@ SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
                        [&](const Params& p) { return read_lamp_schedule(p, motion); },
                        read_lamp_map,
                        read_stars,
+                       read_orbit,
                        date ? std::optional(SourceTime{date->as_text(), date->where()}) : std::nullopt,
                        &asked};
   for (const LightRow* key : light_keys()) {

@@ -2,9 +2,11 @@
 // focal plane themselves (sensor/point_images.h).
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "light/night/satellites.h"
 #include "math/vec.h"
 #include "spectral/curve.h"
 #include "spectral/state.h"
@@ -16,19 +18,38 @@ struct FarPoint {
   double v = 0;      // magnitude
   double scale = 1;  // of its light
   double kelvin = 0;
-  std::shared_ptr<const Curve> shape = {};  // over that at 0.55 um; null = a blackbody's of `kelvin`
+  std::shared_ptr<const Curve> shape = {};         // over that at 0.55 um; null = a blackbody's of `kelvin`
+  bool twinkles = true;                            // it has no disk
+  std::shared_ptr<const SunlitPoint> moving = {};  // a satellite, whose light is its share of the Sun's
   Dir direction;  // towards it at the moment of FarPoints, scene ENU, lifted by the air of the place
+};
+
+// Where and when a point is looked for: m, scene ENU; s.
+struct PointLook {
+  double time = 0;
+  Vec3 from;
 };
 
 struct FarPoints {
   std::vector<FarPoint> points;
-  Dir pole;            // they turn about it with the Earth, scene ENU
-  double seconds = 0;  // simulation time of the directions
+  Dir pole;                                    // they turn about it with the Earth, scene ENU
+  double seconds = 0;                          // simulation time of the directions
+  std::optional<uint64_t> scintillation = {};  // seed; nothing: they do not twinkle
+  double height = 0;                           // m above sea level, of the scene's origin
 
-  // Towards a point at a time (s). Refraction is that of the moment.
-  Dir direction_at(const FarPoint& point, double time) const;
+  // The factor by which a point differs from its mean in an exposure of a sensor; 1 where nothing twinkles, or the
+  // sensor's aperture (m) is not known (0).
+  struct Watched {
+    double aperture = 0, begin = 0, end = 0;  // m; s
+    Vec3 from;                                // m, scene ENU
+    Dir direction;                            // of the point
+  };
+  double scintillation_of(size_t point, const Watched& how) const;
+
+  // Towards a point. Refraction is that of the moment; satellites have none.
+  Dir direction_at(const FarPoint& point, const PointLook& look) const;
   // Above the air, W/(m2 um), the mean of each bin.
-  std::vector<double> irradiance(const FarPoint& point, const SpectralState& state) const;
+  std::vector<double> irradiance(const FarPoint& point, const SpectralState& state, const PointLook& look = {}) const;
 };
 
 }  // namespace suite

@@ -32,6 +32,7 @@ struct LightNature {
   bool drawn = true;    // sample() is worth asking; false = met by chance only (uniform skies)
   bool moves = false;   // what it sends depends on the time of the ray
   bool placed = false;  // stands in the scene, and draw_place() finds it
+  bool above = false;   // sensors above the air may see it on their way to what their rays meet (add_from_above)
   int numbers = 2;      // random numbers that sample() uses, 2 or 4
   int draws = 1;        // samples of it that the first node of a path may take (lamps: kMostDraws, one: 1)
   static constexpr int kMostDraws = 4;
@@ -112,6 +113,18 @@ class Light {
   virtual void add_without_points(Dir direction, double time, float scale, std::span<float> radiance) const {
     add(direction, time, scale, radiance);
   }
+  // A sensor's own ray that starts above the air, where layers of the upper air shine in front of what it meets and
+  // the sky goes on below the horizon. Lights of nature().above alone.
+  struct RayFromAbove {
+    Vec3 from;  // m, ENU
+    Dir direction;
+    double length = 0;                // m, to what it meets; infinite: nothing
+    std::span<const float> air = {};  // what the air leaves of light from behind, per bin, likewise; empty = all
+    bool points_apart = false;        // points come by other means
+  };
+  // Whether sensors at a place see it so; add() is then not asked for their own rays.
+  virtual bool is_below(Vec3) const { return false; }
+  virtual void add_from_above(const RayFromAbove&, std::span<float>) const {}
   // Those points; null = none. They live as long as the light.
   virtual const FarPoints* points() const { return nullptr; }
   // The beam that the air scatters (Sun, Moon). Its spectrum lives as long as the light.

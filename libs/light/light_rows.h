@@ -13,6 +13,7 @@
 #include "light/lamp_schedule.h"
 #include "light/light_spec.h"
 #include "light/night/stars.h"
+#include "motion/sgp4.h"
 
 namespace suite {
 
@@ -44,6 +45,8 @@ struct LightContext {
   std::function<std::shared_ptr<const LampMap>(const Params&)> lamp_map = {};
   // Stars of a catalogue of the user.
   std::function<std::vector<CatalogueStar>(const Params& path)> stars = {};
+  // Mean elements of a satellite, of its keys `tle` and `satellite`, or `tle_lines`.
+  std::function<OrbitElements(const Params&)> orbit = {};
   std::optional<SourceTime> date = {};       // of second 0, where the text says it
   std::vector<AskedCurve>* asked = nullptr;  // receives the curves that were read
   size_t number = 1;                         // of the entry in its list

@@ -2,25 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 
 #include "base/interrupt.h"
 #include "light/far_points.h"
+#include "scheduler/point_sight.h"
 #include "sensor/point_images.h"
 
 namespace suite {
 
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
-
 class PointsInView {
  public:
   PointsInView(const Primed& primed, const SeesPoints& sensor, const Polarimetry* polarimetry, const Capture& capture,
                CaptureResult& result)
       : primed_(primed),
+        sight_(primed),
         sensor_(sensor),
         polarimetry_(polarimetry),
         capture_(capture),
@@ -32,18 +31,15 @@ class PointsInView {
   }
 
   void add(const FarPoints& all, uint16_t light, std::vector<SeenPoint>& seen) {
-    Contribution direct;
-    direct.light = light;
-    shares_.assign(result_.channels, behind(0));
-    for (size_t c = 1; c < result_.channels; ++c) {
-      const int component = primed_.channels.component(c);
-      shares_[c] =
-          component > 0 ? behind(component) : behind(0) * static_cast<double>(primed_.channels.share(c, direct));
-    }
     for (const FarPoint& point : all.points) {
       constexpr double kGrace = 0.5;  // s
       stop_point(kGrace);
-      add(all, point, seen);
+      set_shares(light, false);
+      add(all, point, nullptr, seen);
+      for (const Dir& mirror : sight_.mirrors()) {
+        set_shares(light, true);
+        add(all, point, &mirror, seen);
+      }
     }
   }
 
@@ -55,18 +51,34 @@ class PointsInView {
     return component == 0 ? 1 : 0;
   }
 
-  void add(const FarPoints& all, const FarPoint& point, std::vector<SeenPoint>& seen) {
+  void set_shares(uint16_t light, bool mirrored) {
+    Contribution c;
+    c.light = light;
+    if (mirrored) c.order = c.smooth = 1, c.events = by_surface | by_dirac;
+    shares_.assign(result_.channels, behind(0));
+    for (size_t i = 1; i < result_.channels; ++i) {
+      const int component = primed_.channels.component(i);
+      shares_[i] = component > 0 ? behind(component) : behind(0) * static_cast<double>(primed_.channels.share(i, c));
+    }
+  }
+
+  // mirror: the normal of that in which the point is looked for; null = none.
+  void add(const FarPoints& all, const FarPoint& point, const Dir* mirror, std::vector<SeenPoint>& seen) {
     std::vector<double> above;
     given_.clear();
     SeenPoint found{point.name, point.v, 0, 0, std::vector<double>(result_.bands, 0.0)};
     double weight = 0, time = -1;
     Vec3 origin;
-    const auto direction_at = [&](double t) { return all.direction_at(point, t); };
+    const auto direction_at = [&](double t, Vec3 from) {
+      const Dir d = all.direction_at(point, {t, from});
+      return mirror ? FlatMirrors::mirrored(d, *mirror) : d;
+    };
     sensor_.image_point(capture_, direction_at, std::pow(10, -0.4 * point.v), [&](const PointShare& s) {
-      if (above.empty()) above = all.irradiance(point, primed_.state());
+      if (above.empty()) above = twinkling(all, point, {s.time, s.origin});
       // Shares of one moment have one line of sight.
       if (weight == 0 || s.time != time || !(s.origin == origin))
-        look(above, time = s.time, origin = s.origin, direction_at(s.time));
+        look(above, {time = s.time, origin = s.origin, direction_at(s.time, s.origin),
+                     all.direction_at(point, {s.time, s.origin}), mirror != nullptr});
       take(s, found);
       weight += s.weight;
       const Capture::Place at = capture_.place_of(s.problem);
@@ -80,28 +92,21 @@ class PointsInView {
     seen.push_back(std::move(found));
   }
 
-  // What arrives of a point along a line of sight, per bin.
-  void look(const std::vector<double>& above, double time, Vec3 origin, Dir d) {
-    arriving_.assign(above.size(), 0.0);
-    if (is_hidden(time, origin, d)) return;
-    std::vector<float> T(above.size(), 1.0f);
-    if (const auto& air = primed_.kit.environment->atmosphere) air->transmittance(origin, d, kFar, T);
-    for (size_t k = 0; k < above.size(); ++k) arriving_[k] = above[k] * static_cast<double>(T[k]);
+  // Above the air, in the mean of the exposure.
+  std::vector<double> twinkling(const FarPoints& all, const FarPoint& point, const PointLook& look) const {
+    std::vector<double> above = all.irradiance(point, primed_.state(), look);
+    const double factor = all.scintillation_of(static_cast<size_t>(&point - all.points.data()),
+                                               {sensor_.aperture(capture_), capture_.window.begin, capture_.window.end,
+                                                look.from, all.direction_at(point, look)});
+    for (double& e : above) e *= factor;
+    return above;
   }
 
-  bool is_hidden(double time, Vec3 origin, Dir d) const {
-    if (const auto& earth = primed_.kit.environment->earth) {
-      if (earth->meet(origin, d, kFar)) return true;
-    } else if (d.z < 0) {
-      const Vec3 from = origin + Vec3{0, 0, 6371e3};
-      const double along = dot(from, d);
-      if (along < 0 && dot(from, from) - along * along < 6371e3 * 6371e3) return true;
-    }
-    Ray ray{origin, d, time};
-    uint8_t blocked = 0;
-    TraceStatistics statistics;
-    primed_.tracer->occluded({&ray, 1}, {&kFar, 1}, {&blocked, 1}, false, statistics);
-    return blocked;
+  // What arrives of a point along a line of sight, per bin.
+  void look(const std::vector<double>& above, const PointSight::Sightline& sight) {
+    const std::span<const double> share = sight_.look(sight);
+    arriving_.resize(above.size());
+    for (size_t k = 0; k < above.size(); ++k) arriving_[k] = above[k] * share[k];
   }
 
   void take(const PointShare& s, SeenPoint& found) {
@@ -131,6 +136,7 @@ class PointsInView {
   }
 
   const Primed& primed_;
+  PointSight sight_;
   const SeesPoints& sensor_;
   const Polarimetry* const polarimetry_;  // null: the sensor tells no polarisation
   const Capture& capture_;

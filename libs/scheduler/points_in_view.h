@@ -1,7 +1,8 @@
 // Far points (stars) on a sensor's focal plane: put there one by one, dimmed by the air of the line of sight, hidden by
 // what stands in it.
 //
-// Assumes: what stands in the way hides them wholly (panes and water, too); media do not dim them; the Earth, where the
+// Assumes: what stands in the way hides them wholly, but for smooth surfaces that pass or mirror them (point_sight.h):
+// a flat one at rest has an image of each; polarimeters see neither. Media do not dim them; the Earth, where the
 // simulation has none, is a sphere of 6371 km under the scene.
 #pragma once
 #include "scheduler/primed.h"

@@ -33,10 +33,12 @@ class SeesPoints {
   // Whether it does so in a capture: its rays say the same.
   virtual bool sees_points(const Capture& capture) const = 0;
   // Hands over all shares of a point in a capture, between Sensor::begin and accept. direction_at: towards it at a
-  // time. brightness: of it over that of a star of V = 0, for which more effort is worth while. share: is called in any
-  // order, from one thread.
-  virtual void image_point(const Capture& capture, const std::function<Dir(double)>& direction_at, double brightness,
-                           const std::function<void(const PointShare&)>& share) const = 0;
+  // time from a place (m, scene ENU). brightness: of it over that of a star of V = 0, for which more effort is worth
+  // while. share: is called in any order, from one thread.
+  virtual void image_point(const Capture& capture, const std::function<Dir(double, Vec3)>& direction_at,
+                           double brightness, const std::function<void(const PointShare&)>& share) const = 0;
+  // m, of the optics, by which stars twinkle; 0: not known.
+  virtual double aperture(const Capture&) const { return 0; }
   // The points of a capture, before its result is accepted.
   virtual void take_points(const Capture& capture, std::vector<SeenPoint> points) = 0;
 };

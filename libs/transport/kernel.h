@@ -16,6 +16,7 @@
 #include <limits>
 #include <vector>
 
+#include "transport/flat_mirrors.h"
 #include "transport/techniques/set.h"
 #include "transport/wave.h"
 
@@ -82,6 +83,7 @@ class PathKernel final : public PathTracing {
 
   // kernel_fly.h: from one node to the next.
   void request_hits(TraceRequest& request);
+  void see_from_above();
   void fly();
   void fly_one(size_t slot);
   bool meets_outside(const Path& path) const;
@@ -123,7 +125,9 @@ class PathKernel final : public PathTracing {
   Wave wave_;
   Techniques<Wave> techniques_;
   const bool keep_first_;
-  const bool draws_;  // something decides by Ray::draw
+  const bool draws_;                  // something decides by Ray::draw
+  const FlatMirrors* const mirrors_;  // null: far points come to sensors straight ahead alone
+  const bool above_;                  // some light may be seen by sensors above the air
   // Of each path.
   std::vector<FirstMeeting> firsts_;
   std::vector<SensorRay::Receiver> receivers_;

@@ -1,6 +1,7 @@
 // Definitions of kernel.h: how paths start and fly.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -13,6 +14,9 @@ PathKernel<Wave>::PathKernel(const KernelContext& c, size_t width, Throughputs& 
     : wave_(c, width, throughputs, sink),
       keep_first_(c.keep_first),
       draws_(c.surface.tracer().has_holes() || wave_.lost),
+      mirrors_(c.mirrors),
+      above_(std::any_of(wave_.lights.outside.begin(), wave_.lights.outside.end(),
+                         [](const SampledLight& light) { return light.nature.above; })),
       firsts_(c.keep_first ? width : 0),
       receivers_(c.receivers ? width : 0),
       rays_(width),
@@ -47,6 +51,7 @@ void PathKernel<Wave>::start(uint32_t p, const SensorRay& ray, const SampleStrea
   record.scattered_first = record.met = false;
   record.received = ray.receiver != SensorRay::Receiver::none;
   path.received = record.received, path.points_apart = ray.points_apart && !Space::kMedia;
+  if (mirrors_) FlatMirrors::begin(path);
   wave_.space.start(p, path);
   techniques_.residual.start(p);
   if (!record.received) return active_.push_back(p);
@@ -76,6 +81,7 @@ bool PathKernel<Wave>::next(TraceRequest& request) {
         stage_ = Stage::arrive;
         break;
       case Stage::arrive:
+        if (first_stage_ && above_) see_from_above();
         if constexpr (Space::kFills) fly();
         arrive();
         sample_lights();
@@ -123,6 +129,30 @@ bool PathKernel<Wave>::meets_outside(const Path& path) const {
   return std::any_of(wave_.lights.outside.begin(), wave_.lights.outside.end(), [&](const SampledLight& light) {
     return light.light->met_outside(path.direction, path.time).has_value();
   });
+}
+
+// Lights that shine on the way of sensors' own rays, unweakened by what these meet.
+template <class Wave>
+void PathKernel<Wave>::see_from_above() {
+  for (size_t i = 0; i < active_.size(); ++i) {
+    const uint32_t p = active_[i];
+    const Path& path = wave_.paths[p];
+    for (const SampledLight& light : wave_.lights.outside) {
+      if (!light.nature.above || !light.light->is_below(path.origin)) continue;
+      Light::RayFromAbove ray{path.origin, path.direction, wave_.way_to(wave_.hits[i], path), {}, path.points_apart};
+      if (wave_.environment.atmosphere && std::isinf(ray.length)) {
+        wave_.transmission.assign(wave_.bins, 1.0f);
+        wave_.environment.atmosphere->transmittance(ray.from, ray.direction, ray.length, wave_.transmission);
+        ray.air = wave_.transmission;
+      }
+      const std::span<float> memory = wave_.dense(p);
+      std::fill(memory.begin(), memory.end(), 0.0f);
+      light.light->add_from_above(ray, memory);
+      wave_.contribution(p, light.index).radiance = memory.data();
+      wave_.contribute();
+    }
+  }
+  wave_.hand_over();
 }
 
 // Flies every path to its next event, then weakens its light. Nothing may change a throughput before the contributions

@@ -223,6 +223,7 @@ bool PathKernel<Wave>::leave(size_t i, const Continuation& on) {
   if constexpr (Space::kScatters) {
     ++path.flights;
     if (node.event) {
+      path.points_apart = false;
       path.origin = wave_.space.place(p);
       path.direction = on.in;
       return false;
@@ -232,6 +233,7 @@ bool PathKernel<Wave>::leave(size_t i, const Continuation& on) {
   path.events |= on.dirac ? by_surface | by_dirac : by_surface;
   path.smooth += on.dirac;
   const bool passed = wave_.passes(node, on);
+  if (path.points_apart) path.points_apart = mirrors_ && mirrors_->follow(path, hit, passed, on.dirac);
   if (passed) wave_.space.cross(p, hit, wave_.surfaces.material(p), on.in);
   path.origin = wave_.surface.tracer().leave(hit, on.in);
   path.arrival += wave_.space.delay(p) * step_along(hit, on.in);

@@ -122,6 +122,7 @@ void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
   wave_.records[p].escape = path.direction;
   for (const SampledLight& light : wave_.lights.outside) {
     if (in_field && light.beam) continue;
+    if (light.nature.above && path.order() == 0 && light.light->is_below(path.origin)) continue;
     if (is_refracted(light.nature) && techniques_.manifold.is_claimed(path, {ClaimedLight::Kind::small, light.index}))
       continue;
     const auto met = light.light->met_outside(path.direction, path.time);
@@ -130,8 +131,9 @@ void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
     if (!met->spectrum) {  // its shape changes with direction
       memory = wave_.dense(p);
       std::fill(memory.begin(), memory.end(), 0.0f);
-      path.points_apart&& path.order() == 0 ? light.light->add_without_points(path.direction, path.time, 1, memory)
-                                            : light.light->add(path.direction, path.time, 1, memory);
+      const bool apart = path.points_apart && (path.order() == 0 || (mirrors_ && FlatMirrors::is_along(path)));
+      apart ? light.light->add_without_points(path.direction, path.time, 1, memory)
+            : light.light->add(path.direction, path.time, 1, memory);
     }
     Contribution& c = wave_.contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);

@@ -56,7 +56,9 @@ struct Lane {
   uint32_t flights = 0;       // through media so far
   uint8_t events = 0;         // EventKind so far
   uint8_t received = 0;       // 1: starts at a receiver
-  bool points_apart = false;  // SensorRay::points_apart
+  bool points_apart = false;  // SensorRay::points_apart; and the path is not known to see them otherwise
+  bool mirrored = false;      // by one flat mirror (flat_mirrors.h)
+  std::array<float, 3> line;  // of sight, likewise
   WaterSeen water = WaterSeen::nothing;
   uint32_t order() const { return surfaces + scatterings; }
 };

@@ -13,6 +13,7 @@
 
 namespace suite {
 
+class FlatMirrors;
 class GlossGuide;
 class StokesThroughputs;
 
@@ -41,8 +42,9 @@ struct KernelContext {
   bool receivers = false;   // rays may start at receivers
   bool branches = true;     // paths may go on in more than one way (techniques/splitting.h): their light is one sum
   bool waters = false;      // contributions are to tell what they have to do with water
-  const GlossGuide* gloss = nullptr;  // null: no continuation is drawn towards light that glossy surfaces throw
-  bool stokes = false;                // paths carry polarisation: only by techniques that tell their matrices
+  const GlossGuide* gloss = nullptr;     // null: no continuation is drawn towards light that glossy surfaces throw
+  bool stokes = false;                   // paths carry polarisation: only by techniques that tell their matrices
+  const FlatMirrors* mirrors = nullptr;  // null: far points are left to sensors straight ahead alone
 };
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.

@@ -40,6 +40,7 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
   if (options_.method == Method::paper && options_.max_nodes == 0) options_.max_nodes = kPaperNodes;
   choice_ = choose_kernel(context(environment_));
   gloss_ = make_gloss();
+  mirrors_ = make_mirrors();
 }
 
 Pipeline::~Pipeline() = default;
@@ -84,7 +85,8 @@ KernelContext Pipeline::context(const Environment& environment) const {
           true,
           channels_.of_water(),
           &environment == &environment_ ? gloss_.get() : nullptr,
-          channels_.of_stokes()};
+          channels_.of_stokes(),
+          mirrors_.get()};
 }
 
 std::unique_ptr<const GlossGuide> Pipeline::make_gloss() const {
@@ -92,6 +94,15 @@ std::unique_ptr<const GlossGuide> Pipeline::make_gloss() const {
     return nullptr;
   std::vector<GlossPhoton> photons = gloss_photons(surface_, optics_, environment_, options_.gloss_photons);
   return photons.empty() ? nullptr : std::make_unique<GlossGuide>(std::move(photons));
+}
+
+// Images of far points are unpolarised light, which a mirror does not leave so.
+std::unique_ptr<const FlatMirrors> Pipeline::make_mirrors() const {
+  const auto& lights = environment_.lights;
+  const bool points = std::any_of(lights.begin(), lights.end(), [](const auto& light) { return light->points(); });
+  if (!points || choice_.matte || !leaves_points() || of_stokes()) return nullptr;
+  auto mirrors = std::make_unique<const FlatMirrors>(surface_.tracer(), optics_);
+  return mirrors->any() ? std::move(mirrors) : nullptr;
 }
 
 bool Pipeline::may_miss(const Capture& capture) const {

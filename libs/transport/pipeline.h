@@ -10,6 +10,7 @@
 #include "estimate/statistics.h"
 #include "sensor/sensor.h"
 #include "transport/channels.h"
+#include "transport/flat_mirrors.h"
 #include "transport/gloss_guide.h"
 #include "transport/path_tracing.h"
 #include "transport/truth/truth.h"
@@ -38,6 +39,8 @@ class Pipeline {
   bool of_stokes() const { return channels_.of_stokes(); }
   // Whether paths leave points to sensors that ask for it (SensorRay::points_apart): media weaken points along flights.
   bool leaves_points() const { return !choice_.in_media(); }
+  // Flat smooth surfaces in which paths leave them likewise; null = none.
+  const FlatMirrors* mirrors() const { return mirrors_.get(); }
   const Tracer& tracer() const { return surface_.tracer(); }
 
  private:
@@ -47,6 +50,7 @@ class Pipeline {
   // Error: what polarisation cannot be carried with.
   void check_stokes() const;
   std::unique_ptr<const GlossGuide> make_gloss() const;
+  std::unique_ptr<const FlatMirrors> make_mirrors() const;
   std::unique_ptr<Workspace> borrow(const Capture& capture) const;
 
   const Surface& surface_;
@@ -60,6 +64,7 @@ class Pipeline {
   PipelineOptions options_;
   KernelChoice choice_;
   std::unique_ptr<const GlossGuide> gloss_;  // null: nothing to be guided to
+  std::unique_ptr<const FlatMirrors> mirrors_;
   // Working memory goes from block to block; as many as threads have been at work at once. All that are idle were made
   // for captures alike.
   mutable std::mutex mutex_;

@@ -39,6 +39,6 @@ double limit_of(const Case& c, const Numerics& numerics, bool& reaches_end);
 // All rows, group by group.
 std::vector<Case> all_cases();
 std::vector<Case> quantity_cases(), optics_cases(), scene_cases(), motion_cases(), thermal_cases(), media_cases(),
-    air_cases(), water_cases(), heat_cases(), polarisation_cases(), lidar_cases();
+    air_cases(), water_cases(), heat_cases(), polarisation_cases(), lidar_cases(), night_cases();
 
 }  // namespace suite::extreme

@@ -1,4 +1,4 @@
-// Prints the table of extreme cases. Usage: stability [--sweep] [--json FILE] [--html FILE]
+// Prints the table of extreme cases. Usage: stability [--sweep] [--only GROUP] [--json FILE] [--html FILE]
 // Exit code 1 when a case fails.
 #include <cmath>
 #include <cstdio>
@@ -81,12 +81,13 @@ Json json_of(const std::vector<Row>& rows) {
   return all;
 }
 
-int run(bool sweep, const char* json, const char* html) {
+int run(bool sweep, const char* only, const char* json, const char* html) {
   std::vector<Row> rows;
   size_t held = 0, failed = 0, open = 0;
   std::printf("%-15s %-64s %10s %9s  %-20s %-7s %s\n", "group", "case", "error", "bound", "unit", "verdict",
               sweep ? "holds to" : "");
   for (Case& c : all_cases()) {
+    if (only && c.group != only) continue;
     Row r{std::move(c), {}, 0, false};
     if (r.c.open.empty()) r.outcome = measure(r.c, production());
     const bool drive = sweep && r.outcome.held && !r.c.sweep.parameter.empty() && r.c.sweep.to != r.c.sweep.from;
@@ -116,18 +117,20 @@ int run(bool sweep, const char* json, const char* html) {
 
 int main(int argc, char** argv) try {
   bool sweep = false;
-  const char *json = nullptr, *html = nullptr;
+  const char *only = nullptr, *json = nullptr, *html = nullptr;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--sweep"))
       sweep = true;
+    else if (!std::strcmp(argv[i], "--only") && i + 1 < argc)
+      only = argv[++i];
     else if (!std::strcmp(argv[i], "--json") && i + 1 < argc)
       json = argv[++i];
     else if (!std::strcmp(argv[i], "--html") && i + 1 < argc)
       html = argv[++i];
     else
-      return std::fprintf(stderr, "usage: stability [--sweep] [--json FILE] [--html FILE]\n"), 2;
+      return std::fprintf(stderr, "usage: stability [--sweep] [--only GROUP] [--json FILE] [--html FILE]\n"), 2;
   }
-  return suite::extreme::run(sweep, json, html);
+  return suite::extreme::run(sweep, only, json, html);
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());
   return 1;

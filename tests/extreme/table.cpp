@@ -32,7 +32,7 @@ double limit_of(const Case& c, const Numerics& numerics, bool& reaches_end) {
 std::vector<Case> all_cases() {
   std::vector<Case> all;
   for (auto* make : {quantity_cases, optics_cases, scene_cases, motion_cases, thermal_cases, media_cases, air_cases,
-                     water_cases, heat_cases, polarisation_cases, lidar_cases})
+                     water_cases, heat_cases, polarisation_cases, lidar_cases, night_cases})
     for (Case& c : make()) all.push_back(std::move(c));
   return all;
 }

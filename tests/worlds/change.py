@@ -132,6 +132,9 @@ def brighter(world, factor):
     if "night_sky" in made.sim:
         made.sim["night_sky"]["scale"] = {part: by * factor for part, by in made.sim["night_sky"]["scale"].items()}
     for lamp in made.sim["lamps"]:
+        if "map" in lamp:  # whose unit says how much it is
+            lamp["map"]["scale"] *= factor
+            continue
         what = "radiance" if "radiance" in lamp else "intensity"
         lamp[what] = times_number(lamp[what], factor)
     return made

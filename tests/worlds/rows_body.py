@@ -1,4 +1,5 @@
 """Rows of what stands in a world: shapes, things (bodies of media, glass, nested, touching), floors, what fills space."""
+import rows_map
 import shapes
 
 CLOSED = {"what": ("closed",)}
@@ -289,7 +290,12 @@ def glow(d, reflectance):
     m = d.world.add("materials", "glow", {"model": "lambert", "reflectance": reflectance})
     radiance = d.blackbody_curve(1 - reflectance) if d.furnace else round(d.level * d.u(0.5, 5), 3)
     both = d.furnace or d.chance(0.5)
-    d.world.sim["lamps"].append({"kind": "surface", "material": m, "radiance": radiance, **({"both_sides": True} if both else {})})
+    lamp = {"kind": "surface", "material": m, "radiance": radiance, **({"both_sides": True} if both else {})}
+    if not d.furnace and not {"moved", "periodic"} & d.traits and d.maybe("lamp_map", 0.4):  # stands in scene ENU
+        w, scale = d.wavelength, round(d.level * d.width * d.u(0.5, 5), 5)
+        lamp.update(radiance=1, map={"file": rows_map.tiff(d, [d.one(0, 0.3, 1) for _ in range(rows_map.SIDE ** 2)]), "scale": scale,
+                                     "band_um": [round(w * 0.9, 4), round(w * 1.1, 4)], "local": {"origin": [rows_map.ORIGIN, -rows_map.ORIGIN], "gsd": rows_map.GSD}})
+    d.world.sim["lamps"].append(lamp)
     return m
 
 
@@ -346,7 +352,7 @@ ROWS = [
     ("nested", "thing", nested, {"weight": 2}), ("touching", "thing", touching), ("glass_on_opaque", "thing", glass_on_opaque),
     ("overlapping", "thing", overlapping), ("volume", "thing", volume, {"without": ("no_volume",)}), ("cluster", "thing", cluster),
     ("lit_glass", "thing", lit_glass, {"without": ("furnace", "reciprocal", "no_lit_glass")}), ("glows_within", "detail", None, {"without": ("furnace",)}),
-    ("glowing", "thing", glowing),
+    ("glowing", "thing", glowing), ("lamp_map", "detail", None),
     ("floor_none", "floor", floor_none, {"weight": 1.5}), ("floor_plane", "floor", floor_plane), ("floor_infinite", "floor", floor_infinite),
     ("floor_sinusoid", "floor", floor_sinusoid), ("floor_mesh", "floor", floor_mesh), ("pool", "floor", pool, {"weight": 2}),
     ("room_sphere", "floor", room("sphere"), {"weight": 2.4, "without": ("no_room",)}),

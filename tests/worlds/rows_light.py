@@ -66,11 +66,31 @@ def clear_sky(d):
     d.world.sim["sky"] = {"kind": "clear"}
 
 
+PARTS = ("zodiacal", "airglow", "starlight", "galactic", "stars", "planets")
+
+
 def night_sky(d):
-    """As bright as lamps; its stars spread, for sensors differ in which of them see stars as points."""
+    """As bright as lamps. Its stars are spread, for sensors differ in which of them see stars as points, but where a relation bears that ('stars')."""
     scale = d.u(1e5, 4e5)
-    d.world.sim["night_sky"] = {"time_utc": "2026-03-20T23:00:00Z", "place": {"latitude_deg": d.u(-70, 70), "longitude_deg": d.u(-170, 170)}, "resolve_stars": "none",
-                                "scale": {part: round(scale * d.u(0.2, 1)) for part in ("zodiacal", "airglow", "starlight", "galactic", "stars", "planets")}}
+    parts = [part for part in PARTS if d.chance(0.75)] or ["airglow"]
+    spec = {"time_utc": d.one("2026-03-20T23:00:00Z", "1973-07-02T01:00:00Z", "2099-12-05T12:00:00Z"),
+            "place": {"latitude_deg": d.u(-70, 70), "longitude_deg": d.u(-170, 170)}, "parts": parts, "solar_flux_sfu": d.u(60, 300),
+            "resolve_stars": "in_view" if "stars" in d.traits and d.chance(0.5) else "none"}
+    if d.maybe("city_glow", 0.4):
+        spec["city_glow"] = [{"azimuth_deg": d.u(0, 360), "spectrum": {"lamp": d.one("sodium", "led_3000", "mercury")}, "width_deg": d.u(5, 40), "height_deg": d.u(5, 30),
+                              **d.one({"horizon_cd_m2": 1e-3}, {"population": 50000, "distance_km": d.u(6, 80)})} for _ in range(d.one(1, 2))]
+        parts.append("city_glow")
+    if d.maybe("star_catalogue", 0.3):
+        spec["catalogue"] = catalogue(d)
+    spec["scale"] = {part: round(scale * d.u(0.2, 1)) for part in parts}
+    d.world.sim["night_sky"] = spec
+
+
+def catalogue(d):
+    """Stores a table of stars of V -1 to 5, of any colour, and answers its name."""
+    rows = [f"{d.u(0, 360)},{d.u(-89, 89)},{d.u(-1, 5)},{d.one(3000, 6000, 12000)}" for _ in range(200)]
+    d.world.files["stars.csv"] = "\n".join(["ra_deg,dec_deg,v_mag,temperature_k", *rows, ""]).encode()
+    return "stars.csv"
 
 
 def sky_furnace(d):
@@ -123,6 +143,8 @@ ROWS = [
                                                               "lamp_spot", "lamp_distribution", "lamp_scheduled", "room_sphere", "room_box", "room_glows",
                                                               "profile_air", "profile_no_adjacency", "traced_air", "gases_air")}),
     ("night_sky", "light", night_sky, far(1.3, ("reciprocal", "moved", "later"))),  # stands by date: is not turned, and moves as time goes on
+    ("city_glow", "detail", None, {"without": tuple(air for air in ONE_SKY if air.endswith("air") or air == "profile_no_adjacency") + ("layered_air",)}),
+    ("star_catalogue", "detail", None),
     ("lamp_point", "light", lamp("point"), NOT_FURNACE), ("lamp_spot", "light", lamp("spot"), NOT_FURNACE),
     ("lamp_distribution", "light", lamp_distribution, NOT_FURNACE), ("lamp_scheduled", "light", lamp_scheduled, {"without": ("furnace", "still_world")}),
 ]

@@ -16,6 +16,16 @@ def envi(d, bands, wavelengths=None, whole=False):
     return name
 
 
+def tiff(d, values):
+    """Stores SIDE x SIDE numbers as a TIFF of 32-bit floats in one strip and answers its name."""
+    name, data = f"map{len(d.world.files)}.tif", struct.pack(f"<{len(values)}f", *values)
+    # Tag, type (3: 16 bit, 4: 32 bit) and value: width, length, bits, no compression, black is zero, offset, samples, rows, bytes, floats.
+    tags = ((256, 3, SIDE), (257, 3, SIDE), (258, 3, 32), (259, 3, 1), (262, 3, 1), (273, 4, 8), (277, 3, 1), (278, 3, SIDE), (279, 4, len(data)), (339, 3, 3))
+    entries = b"".join(struct.pack("<HHII", tag, kind, 1, value) for tag, kind, value in tags)
+    d.world.files[name] = struct.pack("<2sHI", b"II", 42, 8 + len(data)) + data + struct.pack("<H", len(tags)) + entries + struct.pack("<I", 0)
+    return name
+
+
 def pixels(d, values):
     """SIDE x SIDE values out of a list; all the same where the world will be moved under its drapes."""
     if "moved" in d.traits:

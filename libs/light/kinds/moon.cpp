@@ -1,8 +1,10 @@
 #include "light/kinds/moon.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "light/kinds/body.h"
+#include "light/kinds/phased_disk.h"
 #include "light/kinds/rows.h"
 #include "light/kinds/solar_spectrum.h"
 #include "motion/ut1.h"
@@ -108,9 +110,15 @@ class MoonLight final : public BodySpec {
     return spec_.disk.time || spec_.by_phase ? make_light(suite::resolved(spec_, at)) : nullptr;
   }
 
+  std::shared_ptr<const Light> bake(const Tracer& tracer, const SpectralState& state) const override {
+    if (!spec_.phased || !spec_.to_sun) return BodySpec::bake(tracer, state);
+    return std::make_shared<const PhasedDisk>(disk_, *spec_.to_sun, spec_.of_earth, state);
+  }
+
   LightSpecPtr standing(double zenith) const override {
     if (!spec_.disk.time) return nullptr;
     MoonSpec still = spec_;
+    still.phased = false;
     still.disk.time.reset();
     still.disk.direction = Dir{0, 0, 1};
     still.geometry.phase = still.geometry.sun_longitude = 1.5 * zenith;
@@ -137,6 +145,12 @@ LightSpecPtr read_moon(const Params& p, const LightContext& context) {
     moon.geometry.phase = phase->as_number_in(0, 180, "degrees") * kDegree;
     moon.geometry.sun_longitude = moon.geometry.phase;
   }
+  if (const auto face = p.find("face")) {
+    moon.phased = face->as_choice({"even", "phased"}) == 1;
+    if (moon.phased && (!moon.disk.time || moon.disk.half_angle == 0))
+      throw face->error("where the Sun stands as seen from the Moon is known by date alone, and a disk has a width",
+                        "direction: {time_utc: ...}, not collimated");
+  }
   if (const auto earthshine = p.find("earthshine")) {
     moon.earthshine = earthshine->as_bool();
     if (moon.earthshine && !moon.by_phase)
@@ -162,6 +176,7 @@ MoonSpec resolved(MoonSpec moon, const LightMoment& at) {
     if (moon.disk.disk_by_time) moon.disk.half_angle = body.angular_radius;
     // Sun, Moon and observer in one triangle: phase and the Moon's distance from the Sun.
     const Vec3 to_sun = sun.direction * sun.distance - body.direction * body.distance;
+    moon.to_sun = normalized(to_sun);
     g.phase = angle_between(normalized(to_sun), -body.direction);
     g.sun_distance_au = length(to_sun) / kAstronomicalUnit;
     g.observer_distance = body.distance;
@@ -175,8 +190,12 @@ MoonSpec resolved(MoonSpec moon, const LightMoment& at) {
   }
   if (moon.by_phase) {
     moon.disk.irradiance = moon_irradiance(g, solar_irradiance());
-    if (moon.earthshine)
-      moon.disk.irradiance = sum_of(moon.disk.irradiance, earthshine_irradiance(g, solar_irradiance()));
+    if (moon.earthshine) {
+      const Curve earth = earthshine_irradiance(g, solar_irradiance());
+      moon.disk.irradiance = sum_of(moon.disk.irradiance, earth);
+      const double all = moon.disk.irradiance.mean(0.5, 0.6);
+      moon.of_earth = all > 0 ? std::min(1.0, earth.mean(0.5, 0.6) / all) : 0;
+    }
     moon.by_phase = false;
   }
   return moon;

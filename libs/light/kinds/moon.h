@@ -1,10 +1,10 @@
 // The Moon as a far disk of uniform radiance: its irradiance from the Sun's, its phase and its distance.
 //
-// Assumes: the disk-integrated irradiance is that of the ROLO model 311g; the disk shows no terminator or maria (the
-// whole disk carries the mean radiance), which matters only to what resolves half a degree. Between the 32 bands the
-// reflectance is linear in wavelength, beyond them constant. The fit holds for phase angles of 1.55 to 97 degrees and
-// is extrapolated to 0..150 (beyond, the Moon gives no light). Based on: H. H. Kieffer & T. C. Stone, "The spectral
-// irradiance of the Moon", Astron. J. 129, 2005, equations 10 and 11, table 4.
+// Assumes: the disk-integrated irradiance is that of the ROLO model 311g; the disk shows no maria, and a terminator
+// only where that is asked for (phased_disk.h), else the mean radiance everywhere, which matters to what resolves half
+// a degree. Between the 32 bands the reflectance is linear in wavelength, beyond them constant. The fit holds for phase
+// angles of 1.55 to 97 degrees and is extrapolated to 0..150 (beyond, the Moon gives no light). Based on: H. H. Kieffer
+// & T. C. Stone, "The spectral irradiance of the Moon", Astron. J. 129, 2005, equations 10 and 11, table 4.
 #pragma once
 #include "light/kinds/sun.h"
 
@@ -23,7 +23,11 @@ struct MoonSpec {
   SunSpec disk;             // irradiance: taken as given unless by_phase
   bool by_phase = true;     // irradiance from the phase, the distances and the Sun's spectrum at 1 AU
   bool earthshine = false;  // besides, by phase: sunlight that the Earth sends there
+  bool phased = false;      // the disk shows its phase; by date alone
   MoonGeometry geometry;    // filled from the date when disk.time is given
+  // Filled likewise: from the Moon towards the Sun, scene ENU, and the share of its light that is earthshine.
+  std::optional<Dir> to_sun = {};
+  double of_earth = 0;
 };
 
 LightSpecPtr make_light(MoonSpec spec);

@@ -9,6 +9,9 @@
 #include "light/kinds/body.h"
 #include "light/kinds/rows.h"
 #include "light/kinds/sky.h"
+#include "light/kinds/solar_spectrum.h"
+#include "light/night/glow_shells.h"
+#include "motion/ephemeris.h"
 #include "motion/ut1.h"
 #include "spectral/photopic.h"
 
@@ -19,13 +22,14 @@ namespace {
 // Baked for a state. Drawn from cells of the upper hemisphere by what they send in the mean of all bins.
 class NightSky final : public Light {
  public:
-  NightSky(std::shared_ptr<const NightMap> map, std::shared_ptr<const FarPoints> points, const SpectralState& state)
-      : map_(std::move(map)), points_(std::move(points)), bins_(state.size()) {
+  NightSky(std::shared_ptr<const NightMap> map, const SceneFrame& frame, std::shared_ptr<const FarPoints> points,
+           const SpectralState& state)
+      : map_(std::move(map)), points_(std::move(points)), shells_(frame, map_->layers()), bins_(state.size()) {
     for (const NightMap::Component& c : map_->components())
       for (const Bin& bin : state.bins)
         spectra_.push_back(static_cast<float>(c.spectrum.mean(bin.low_um, bin.high_um)));
     sky_.emplace(density());
-    nature_.far = nature_.wide = true;
+    nature_.far = nature_.wide = nature_.above = true;
     nature_.drawn = sky_->tabulated();
   }
 
@@ -47,6 +51,26 @@ class NightSky final : public Light {
   }
   void add_without_points(Dir d, double, float scale, std::span<float> radiance) const override {
     add(d, scale, radiance, points_ ? map_->first_point() : map_->components().size());
+  }
+  bool is_below(Vec3 place) const override { return shells_.is_below(place); }
+  void add_from_above(const RayFromAbove& ray, std::span<float> radiance) const override {
+    const size_t n = map_->components().size(), first = map_->first_layer();
+    std::array<double, kMost> near{}, behind{};
+    const bool open = std::isinf(ray.length) && !shells_.meets_earth(ray.from, ray.direction);
+    if (open) map_->weights_beyond(ray.direction, std::span(behind.data(), n));
+    if (ray.points_apart && points_) std::fill(behind.begin() + map_->first_point(), behind.end(), 0.0);
+    for (size_t i = 0; i < map_->layers().size(); ++i) {
+      const GlowShells::Share share = shells_.share(i, ray.from, ray.direction, ray.length);
+      near[first + i] = share.near;
+      if (open || std::isfinite(ray.length)) behind[first + i] = share.far;
+    }
+    for (size_t c = 0; c < n; ++c) {
+      if (near[c] == 0 && behind[c] == 0) continue;
+      const float* spectrum = &spectra_[c * bins_];
+      for (size_t i = 0; i < radiance.size(); ++i)
+        radiance[i] +=
+            spectrum[i] * static_cast<float>(near[c] + behind[c] * (ray.air.empty() ? 1.0 : double{ray.air[i]}));
+    }
   }
   const FarPoints* points() const override { return points_.get(); }
   size_t members() const override { return 0; }
@@ -109,6 +133,7 @@ class NightSky final : public Light {
 
   std::shared_ptr<const NightMap> map_;
   std::shared_ptr<const FarPoints> points_;  // null = they are spread, in views as well
+  const GlowShells shells_;
   size_t bins_;
   std::vector<float> spectra_;  // [component][bin]
   std::optional<Sky> sky_;
@@ -151,6 +176,7 @@ class NightSkyLight final : public LightSpec {
     double seconds;
     std::shared_ptr<const NightMap> map;
     std::vector<SeenPlanet> planets;
+    std::vector<std::shared_ptr<const SunlitPoint>> satellites;
     bool media;                                    // in the scene: real air is then no field that knows it
     std::shared_ptr<const FarPoints> points = {};  // not before it has settled
     bool settled = false;
@@ -165,8 +191,15 @@ class NightSkyLight final : public LightSpec {
     const SceneFrame frame =
         spec_.place ? SceneFrame(*spec_.place) : frame_of(at.scene, spec_.time.where, "a night sky");
     const Instant epoch = instant_of(spec_.time), instant = epoch + at.seconds;
-    Now now{frame, julian_tt(instant),     julian_ut1(instant, dut1_at(instant, epoch, at.dut1)), at.seconds, nullptr,
-            {},    !at.scene.media.empty()};
+    const double dut1 = dut1_at(instant, epoch, at.dut1);
+    Now now{frame, julian_tt(instant), julian_ut1(instant, dut1), at.seconds, nullptr, {}, {}, !at.scene.media.empty()};
+    if (!spec_.satellites.empty()) {
+      const Dir to_sun = sun_at(frame, {}, instant, dut1).direction;
+      for (const SatelliteSpec& s : spec_.satellites)
+        now.satellites.push_back(std::make_shared<const SunlitPoint>(
+            orbit_track(s.orbit, frame, Clock(parse_iso8601(spec_.time.utc)), at.dut1), frame, to_sun,
+            s.area * s.albedo));
+    }
     const CelestialSphere sphere(frame, now.tt, now.ut1);
     now.planets = seen_planets(sphere, now.tt);
     now.map = std::make_shared<const NightMap>(spec_, sphere, now.planets);
@@ -189,8 +222,8 @@ class NightSkyLight final : public LightSpec {
       said.push_back(
           "night sky: the air dims it, and what it scatters of it is left out (real air with 'scattering: diffuse' and "
           "adjacency has it)");
-    const bool points =
-        spec_.in_view && ((spec_.catalogue && scale(NightPart::stars) > 0) || scale(NightPart::planets) > 0);
+    const bool points = spec_.in_view && ((spec_.catalogue && scale(NightPart::stars) > 0) ||
+                                          scale(NightPart::planets) > 0 || !spec_.satellites.empty());
     if (points && (traced || now.media))
       said.push_back(
           "night sky: under `scattering: traced`, or with media in the scene, its stars and planets are spread over "
@@ -204,7 +237,7 @@ class NightSkyLight final : public LightSpec {
 
   std::shared_ptr<const Light> bake(const Tracer&, const SpectralState& state) const override {
     SUITE_CHECK(now_);
-    return std::make_shared<const NightSky>(now_->map, now_->points, state);
+    return std::make_shared<const NightSky>(now_->map, now_->frame, now_->points, state);
   }
   bool in_scene() const override { return false; }
   bool shines(double low_um, double high_um) const override { return high_um > kNightLow && low_um < kNightHigh; }
@@ -231,14 +264,33 @@ class NightSkyLight final : public LightSpec {
     FarPoints all;
     all.pole = sphere.pole();
     all.seconds = now_->seconds;
+    all.scintillation = spec_.scintillation, all.height = now_->frame.origin().height_m;
     if (const double s = scale(NightPart::stars); spec_.catalogue && s > 0)
       for (const CatalogueStar& star : *spec_.catalogue)
         if (star.v <= spec_.faintest)
-          all.points.push_back({star.name, star.v, s, star.kelvin, {}, sphere.seen(star.place)});
+          all.points.push_back({star.name, star.v, s, star.kelvin, {}, true, {}, sphere.seen(star.place)});
     if (const double s = scale(NightPart::planets); s > 0)
       for (const SeenPlanet& p : now_->planets)
-        all.points.push_back({name_of(p.planet), p.v, s, 0, std::make_shared<const Curve>(planet_shape(p.planet)),
+        all.points.push_back({name_of(p.planet),
+                              p.v,
+                              s,
+                              0,
+                              std::make_shared<const Curve>(planet_shape(p.planet)),
+                              false,
+                              {},
                               sphere.seen(p.place)});
+    for (size_t i = 0; i < now_->satellites.size(); ++i) {
+      const SunlitPoint& moving = *now_->satellites[i];
+      const double share = moving.share(now_->seconds, {}) * solar_irradiance().mean(0.545, 0.555) / kVegaIrradiance;
+      all.points.push_back({spec_.satellites[i].name,
+                            share > 0 ? -2.5 * std::log10(share) : 99,
+                            1,
+                            0,
+                            {},
+                            true,
+                            now_->satellites[i],
+                            normalized(moving.at(now_->seconds))});
+    }
     return all;
   }
   static std::string sentence_of(const NightMap& map, Instant instant) {
@@ -256,100 +308,6 @@ class NightSkyLight final : public LightSpec {
   const NightSkyLightSpec spec_;
   const std::optional<Now> now_;  // none = not resolved
 };
-
-void read_parts(const Params& p, NightSkySpec& sky) {
-  std::vector<std::string> names;
-  for (size_t i = 0; i < kNightParts; ++i) names.push_back(name_of(static_cast<NightPart>(i)));
-  if (const auto parts = p.find("parts")) {
-    sky.scale.fill(0);
-    for (const Params& one : parts->items()) {
-      double& scale = sky.scale[one.as_choice(names)];
-      if (scale > 0) throw one.error("the part '" + one.as_text() + "' is named twice", "name it once");
-      scale = 1;
-    }
-    if (parts->items().empty()) throw parts->error("no part is named", "one or more of the parts, or no `parts`: all");
-  }
-  const auto scales = p.find("scale");
-  if (!scales) return;
-  for (const std::string& key : scales->keys()) {
-    const auto at = std::find(names.begin(), names.end(), key);
-    if (at == names.end())
-      throw Error(scales->where(key), "the night sky has no part '" + key + "'", name_hint(key, names));
-    sky.scale[static_cast<size_t>(at - names.begin())] *= scales->number_in(key, 0, 1e6, "(of the part's light)");
-  }
-}
-
-void read_catalogue(const Params& p, const LightContext& context, NightSkySpec& sky) {
-  const auto catalogue = p.find("catalogue");
-  const std::string which = catalogue ? catalogue->as_text() : "builtin";
-  if (which == "builtin") {
-    sky.catalogue = {std::shared_ptr<void>(), &bright_star_catalogue()};
-  } else if (which != "none") {
-    sky.catalogue = std::make_shared<const std::vector<CatalogueStar>>(context.stars(*catalogue));
-    sky.faintest = 40;
-  }
-}
-
-CityGlow read_glow(const Params& p, const LightContext& context) {
-  CityGlow glow;
-  glow.azimuth = azimuth_from_compass_deg(p.number_in("azimuth_deg", -360, 360, "degrees, compass"));
-  glow.width = p.number_in("width_deg", 1, 360, "degrees", 20) * kDegree;
-  glow.height = p.number_in("height_deg", 1, 360, "degrees", 15) * kDegree;
-  const Params given = p.at("spectrum");
-  const Curve spectrum = context.positive(given, "spectrum", "any unit");
-  if (!spectrum.covers(0.38, 0.78))
-    throw given.error("the spectrum reaches from " + spectrum.range_text() + ", not from 0.38 to 0.78 um",
-                      "give a longer curve, or declare 'outside: hold' or 'zero'");
-  const double lumens = photopic(spectrum);
-  if (!(lumens > 0)) throw given.error("has no light that the eye sees, by which a glow is given");
-  const auto people = p.find("population");
-  if (!people == !p.has("horizon_cd_m2")) throw p.error("a glow has either 'horizon_cd_m2' or 'population'");
-  double luminance = 0;
-  if (people) {
-    luminance = walker_luminance(people->as_number_in(100, 1e8, "people"),
-                                 p.at("distance_km").as_number_in(5, 100, "km, where Walker's law means something")) *
-                std::exp(45 * kDegree / glow.height);
-  } else {
-    luminance = p.number_in("horizon_cd_m2", 0, 1e4, "cd/m2");
-  }
-  glow.horizon = spectrum.scaled(luminance / lumens);
-  return glow;
-}
-
-void read_glows(const Params& p, const LightContext& context, NightSkySpec& sky) {
-  constexpr size_t kMostGlows = 32;
-  const auto list = p.find("city_glow");
-  if (!list) return;
-  for (const Params& one : list->items()) sky.glows.push_back(read_glow(one, context));
-  if (sky.glows.size() > kMostGlows) throw list->error(strf("more than %zu glows", kMostGlows));
-}
-
-SourceTime time_of(const Params& p, const LightContext& context) {
-  if (const auto time = p.find("time_utc")) {
-    SourceTime given{time->as_text(), time->where()};
-    instant_of(given);
-    return given;
-  }
-  if (context.date) return *context.date;
-  throw p.error("a night sky needs a date", "give `epoch` to the simulation, or `time_utc` here");
-}
-
-LightSpecPtr read_night_sky(const Params& p, const LightContext& context) {
-  NightSkyLightSpec sky;
-  read_parts(p, sky);
-  sky.time = time_of(p, context);
-  if (const auto place = p.find("place")) {
-    sky.place = Geodetic{place->number_in("latitude_deg", -90, 90, "degrees"),
-                         place->number_in("longitude_deg", -180, 360, "degrees"),
-                         place->number_in("height_m", -1000, 20000, "m above WGS84", 0)};
-  }
-  read_catalogue(p, context, sky);
-  read_glows(p, context, sky);
-  sky.faintest = p.number_in("stars_to_mag", -2, 40, "mag", sky.faintest);
-  if (const auto resolve = p.find("resolve_stars")) sky.in_view = resolve->as_choice({"in_view", "none"}) == 0;
-  sky.solar_flux = p.number_in("solar_flux_sfu", 50, 400, "sfu", sky.solar_flux);
-  return make_light(std::move(sky));
-}
 
 }  // namespace
 

@@ -120,6 +120,16 @@ void NightMap::weights(Dir d, std::span<double> w) const {
     std::fill(w.begin(), w.end(), 0.0);
     return;
   }
+  weights_beyond(d, w);
+  const double sine = std::sqrt(std::max(0.0, 1 - d.z * d.z));
+  for (size_t i = 0; i < heights_.size(); ++i)
+    w[first_.airglow + i] =
+        i > 0 && heights_[i] == heights_[i - 1] ? w[first_.airglow + i - 1] : van_rhijn(sine, heights_[i]);
+  for (size_t i = 0; i < glows_.size(); ++i) w[first_.glow + i] = relative_glow(glows_[i], d);
+}
+
+void NightMap::weights_beyond(Dir d, std::span<double> w) const {
+  std::fill(w.begin(), w.end(), 0.0);
   if (first_.airglow > first_.zodiacal) {
     const Vec3 e = sphere_.ecliptic().to_local(d);
     const double longitude = std::atan2(e.y, e.x) - sphere_.sun_longitude(),
@@ -127,14 +137,9 @@ void NightMap::weights(Dir d, std::span<double> w) const {
     w[0] = zodiacal_scale_ * zodiacal_s10(longitude, latitude);
     w[1] = w[0] * zodiacal_reddening(longitude, latitude);
   }
-  const double sine = std::sqrt(std::max(0.0, 1 - d.z * d.z));
-  for (size_t i = 0; i < heights_.size(); ++i)
-    w[first_.airglow + i] =
-        i > 0 && heights_[i] == heights_[i - 1] ? w[first_.airglow + i - 1] : van_rhijn(sine, heights_[i]);
   const double stars = starlight_s10(dot(d, galactic_pole_));
   if (first_.galactic > first_.starlight) w[first_.starlight] = unresolved_ * stars;
   if (first_.glow > first_.galactic) w[first_.galactic] = kGalactic * stars + kExtragalactic;
-  for (size_t i = 0; i < glows_.size(); ++i) w[first_.glow + i] = relative_glow(glows_[i], d);
   if (cells_.empty() && planets_.empty()) return;
   const size_t at = cell_of(sphere_.to_celestial(d));
   if (!cells_.empty())

@@ -63,6 +63,11 @@ class NightMap {
   // Of each component, >= 0 but for the reddening of zodiacal light. direction: unit, scene ENU; weights: as many as
   // components. All 0 below the horizon.
   void weights(Dir direction, std::span<double> weights) const;
+  // The same from above the air, in any direction, of what lies beyond it: 0 of airglow and city glow.
+  void weights_beyond(Dir direction, std::span<double> weights) const;
+  // m, of the layers of airglow, whose components follow each other from first_layer() on.
+  std::span<const double> layers() const { return heights_; }
+  size_t first_layer() const { return first_.airglow; }
   // Integrals of the weights over the upper hemisphere, sr, times the cosine or not.
   struct Integrals {
     std::vector<double> sky, plane;

@@ -75,10 +75,10 @@ class FrameCamera final : public Sensor, public SeesPoints {
   }
 
   bool sees_points(const Capture&) const override { return true; }
-  void image_point(const Capture& capture, const std::function<Dir(double)>& direction_at, double,
+  void image_point(const Capture& capture, const std::function<Dir(double, Vec3)>& direction_at, double,
                    const std::function<void(const PointShare&)>& share) const override {
     const auto place_at = [&](double time) -> std::optional<Vec2> {  // pixels
-      const Dir d = direction_at(time);
+      const Dir d = direction_at(time, position_);
       const double ahead = dot(d, forward_);
       if (!(ahead > 0)) return std::nullopt;
       const double scale = focal_ / (ahead * pitch_);
@@ -90,7 +90,7 @@ class FrameCamera final : public Sensor, public SeesPoints {
       const auto at = place_at(time);
       if (!at || !(at->x >= 0 && at->x < capture.columns && at->y >= 0 && at->y < capture.rows)) continue;
       // A pixel sees evenly over its area, which is cos^3 / f^2 of solid angle a square metre.
-      const double ahead = dot(direction_at(time), forward_), f = focal_ / pitch_;
+      const double ahead = dot(direction_at(time, position_), forward_), f = focal_ / pitch_;
       const size_t problem = static_cast<size_t>(at->y) * capture.columns + static_cast<size_t>(at->x);
       share({problem, f * f / (ahead * ahead * ahead * steps.count), {}, time, position_});
     }

@@ -115,7 +115,7 @@ class Platform final : public Sensor, public SeesPoints {
   }
 
   bool sees_points(const Capture& capture) const override { return suite::sees_points(spec_, capture); }
-  void image_point(const Capture& capture, const std::function<Dir(double)>& direction_at, double brightness,
+  void image_point(const Capture& capture, const std::function<Dir(double, Vec3)>& direction_at, double brightness,
                    const std::function<void(const PointShare&)>& share) const override {
     const Instrument& instrument = spec_.instruments[spec_.arrays[spec_.segments[capture.state].array].instrument];
     const Prepared* prepared = prepared_for(capture);
@@ -123,6 +123,9 @@ class Platform final : public Sensor, public SeesPoints {
         spec_, capture,
         [&](double t) { return prepared && prepared->still ? *prepared->still : pose(instrument, prepared, t); },
         direction_at, brightness, share);
+  }
+  double aperture(const Capture& capture) const override {
+    return spec_.instruments[spec_.arrays[spec_.segments[capture.state].array].instrument].lens.aperture;
   }
   void take_points(const Capture& capture, std::vector<SeenPoint> points) override {
     prepared_[key_of(capture)].points = std::move(points);

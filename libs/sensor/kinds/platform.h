@@ -136,7 +136,8 @@ std::string lines_text(const PlatformSpec& spec, size_t task, size_t array, cons
 std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result, uint64_t read_out);
 // Noise of a band's detectors on the axis, of a chip of gain 1. Error: a NETD that cannot be.
 NoiseAtBackground noise_of(const PlatformSpec& spec, const Segment& segment, size_t band);
-// Noise of one reading, in radiance, of all bands of a segment; 0 of the listed ones, which nothing counts.
+// Noise of one reading on the axis, in radiance, of the bands of a segment's photons; 0 of those that nothing counts.
+// Of several chips that of the highest gain, which is the smallest.
 std::vector<BandNoise> detector_noise_of(const PlatformSpec& spec, const Segment& segment);
 // For headers: NETD of every band; empty where there is no background.
 std::string noise_text(const PlatformSpec& spec, const Segment& segment);
@@ -144,7 +145,7 @@ std::string noise_text(const PlatformSpec& spec, const Segment& segment);
 // instrument at a time, in scene ENU.
 bool sees_points(const PlatformSpec& spec, const Capture& capture);
 void image_point(const PlatformSpec& spec, const Capture& capture, const std::function<Pose(double)>& pose,
-                 const std::function<Dir(double)>& direction_at, double brightness,
+                 const std::function<Dir(double, Vec3)>& direction_at, double brightness,
                  const std::function<void(const PointShare&)>& share);
 // platform_log.cpp: pose and time of an instrument over the tasks, as CSV.
 std::string pose_log(const PlatformSpec& spec, const Instrument& instrument, const SensorContext& context);

@@ -90,12 +90,15 @@ bool sees_points(const PlatformSpec& spec, const Capture& capture) {
 }
 
 void image_point(const PlatformSpec& spec, const Capture& capture, const std::function<Pose(double)>& pose,
-                 const std::function<Dir(double)>& direction_at, double brightness,
+                 const std::function<Dir(double, Vec3)>& direction_at, double brightness,
                  const std::function<void(const PointShare&)>& share) {
   const Segment& segment = spec.segments[capture.state];
   const FocalArray& array = spec.arrays[segment.array];
   const Lens& lens = spec.instruments[array.instrument].lens;
-  const auto seen_at = [&](double time) { return image_of(lens, pose(time).inverse().vector(direction_at(time))); };
+  const auto seen_at = [&](double time) {
+    const Pose at = pose(time);
+    return image_of(lens, at.inverse().vector(direction_at(time, at.point({0, 0, 0}))));
+  };
   const TrailSteps steps(capture.window, [&](double time) -> std::optional<Vec2> {
     const auto place = seen_at(time);
     if (!place) return std::nullopt;

@@ -64,9 +64,11 @@ std::vector<BandNoise> detector_noise_of(const PlatformSpec& spec, const Segment
   const FocalArray& array = spec.arrays[segment.array];
   const DetectorNoise noise =
       array.reader->noise(array.readout.exposure(), array.pitch.x * array.pitch.y * array.detector->fill_factor);
-  std::vector<BandNoise> of(segment.radiance_bands);
+  double gain = 0;  // the more electrons, the smaller the noise is in radiance
+  for (size_t i = 0; i < segment.chips; ++i) gain = std::max(gain, array.chips[segment.first_chip + i].gain);
+  std::vector<BandNoise> of;
   for (const double electrons : segment.electrons) {
-    const double k = electrons_per_radiance(spec, array) * electrons;
+    const double k = electrons_per_radiance(spec, array) * gain * electrons;
     of.push_back(k > 0 ? BandNoise{noise.constant / (k * k), noise.linear / k} : BandNoise{});
   }
   return of;

@@ -70,11 +70,15 @@ class MoonlitSky : public testing::Test {
   TempFolder folder_;
 };
 
-// The formula's own examples, by hand: 448.846 nL or 19.7009, 104.763 nL or 21.2806.
+// The formula's own examples, by hand: 448.846 nL or 19.7009, 104.763 nL or 21.2806, and two beside the views.
 TEST_F(MoonlitSky, IsThatOfKrisciunasAndSchaefer) {
   const View views[] = {{7, 30, 1, 30}, {45, 45, 30, 60}, {90, 60, 20, 60}, {30, 30, 60, 60}};
   EXPECT_NEAR(nanolamberts(views[1]), 448.846, 1e-3);
   EXPECT_NEAR(magnitude(nanolamberts(views[2])), 21.2806, 1e-4);
+  EXPECT_NEAR(nanolamberts({0, 30, 0, 30}), 2367.59, 0.01);
+  EXPECT_NEAR(magnitude(2367.59), 17.8954, 1e-4);
+  EXPECT_NEAR(nanolamberts({120, 60, 0, 60}), 28.681, 1e-3);
+  EXPECT_NEAR(magnitude(28.681), 22.6872, 1e-4);
   constexpr double kAerosol = 0.056;  // with molecules and ozone above 2800 m: V's extinction
   write(views[0], kAerosol);
   const std::string air = run("dirsig-render sim.yaml --air").out;

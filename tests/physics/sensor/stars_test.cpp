@@ -4,83 +4,15 @@
 
 #include <cmath>
 #include <map>
-#include <sstream>
 
-#include "light/kinds/night_sky.h"
-#include "support/platform_kit.h"
+#include "light/kinds/solar_spectrum.h"
+#include "motion/ephemeris.h"
+#include "support/stars_kit.h"
 
 namespace suite {
 namespace {
 
-using test::PlatformKit;
-
-constexpr Geodetic kPlace{49.4, 8.7, 120};
-constexpr const char* kUtc = "2026-03-20T22:00:00Z";
-const CatalogueStar kStar{"1", {1.9, 0.7, 0, 0}, 3.0, 6000};  // high in the west
-constexpr double kStep = 1e-4;                                // rad, of a pixel on the axis: 10 um at 100 mm
-
-CelestialSphere sphere() {
-  const Instant t = instant_from_utc(parse_iso8601(kUtc));
-  return CelestialSphere(SceneFrame(kPlace), julian_tt(t), julian_ut1(t, 0));
-}
-SourceSpecs stars_alone(std::vector<CatalogueStar> stars) {
-  NightSkyLightSpec night;
-  night.scale = {0, 0, 0, 0, 1};
-  night.catalogue = std::make_shared<const std::vector<CatalogueStar>>(std::move(stars));
-  night.time.utc = kUtc;
-  night.place = kPlace;
-  SourceSpecs sources;
-  sources.add(night);
-  return sources;
-}
-// In the band of 0.55 um, above the air, W/(m2 um): Planck over the band, by the trapezoidal rule.
-double above(const CatalogueStar& star) {
-  double sum = 0;
-  const Curve shape = star_shape(star.kelvin);
-  for (int i = 0; i < 100; ++i) sum += shape.at(0.545 + (i + 0.5) * 1e-4) / 100;
-  return kVegaIrradiance * flux_of(star.v) * sum;
-}
-std::string bands() { return "bands: [{name: v, center_um: 0.55, fwhm_um: 0.01, shape: rectangular}]\n"; }
-
-// A camera that looks past the star by angles (rad) to its left and upwards.
-std::string camera(Dir star, double right, double up, const std::string& more = {}) {
-  const Frame frame = Frame::with_tangent(star, cross(star, {0, 0, 1}));
-  const Vec3 at = frame.z + frame.x * std::tan(right) - cross(frame.z, frame.x) * std::tan(up);
-  return "kind: frame_camera\nname: c\ncolumns: 200\nrows: 200\npitch_um: 10\nfocal_length_mm: 100\n"
-         "position_m: [0, 0, 2]\nlook_at_m: [" +
-         strf("%.17g, %.17g, %.17g", 1e3 * at.x, 1e3 * at.y, 2 + 1e3 * at.z) + "]\npaths: 4\n" + bands() + more;
-}
-// Sum of radiance times the solid angle of its pixel.
-double energy(const test::Shot& shot, double f_in_pixels) {
-  double sum = 0;
-  const CaptureResult& r = shot.result;
-  for (size_t p = 0; p < r.problems(); ++p) {
-    const double x = static_cast<double>(p % r.columns) + 0.5 - 0.5 * r.columns,
-                 y = static_cast<double>(p / r.columns) + 0.5 - 0.5 * r.rows,
-                 distance2 = f_in_pixels * f_in_pixels + x * x + y * y;
-    sum += r.radiance[p * r.values_per_problem()] * f_in_pixels / (distance2 * std::sqrt(distance2));
-  }
-  return sum;
-}
-struct Listed {
-  double number, v, column, row, irradiance;
-};
-std::vector<Listed> table_of(const test::Shot& shot) {
-  std::vector<Listed> all;
-  for (const TextFile& text : shot.texts) {
-    std::istringstream lines(text.text);
-    for (std::string line; std::getline(lines, line);) {
-      Listed s{};
-      if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &s.number, &s.v, &s.column, &s.row, &s.irradiance) == 5)
-        all.push_back(s);
-    }
-  }
-  return all;
-}
-std::shared_ptr<Scene> ground(std::vector<Mesh> more = {}) {
-  more.push_back(test::mesh_of({{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {0, 1, 2, 0, 2, 3}, 0));
-  return test::scene_of(std::move(more), {test::material("ground", test::lambert(0.2))});
-}
+using namespace test;
 
 TEST(Stars, FrameCameraKeepsTheirEnergyAndPlace) {
   const Dir star = sphere().without_air(kStar.place);
@@ -142,6 +74,57 @@ TEST(Stars, TruthNamesThem) {
   EXPECT_EQ(r.truth[brightest], 2);
 }
 
+// A satellite in low orbit, in sunlight over a place in darkness: where SGP4 has it, as seen from the camera, and as
+// bright as a matte sphere there; it goes on its way during an exposure, and is dark in the Earth's shadow.
+TEST(Stars, SatellitesPassInSunlight) {
+  OrbitElements elements;
+  elements.satellite = "25544";
+  elements.epoch = parse_iso8601(kUtc);
+  elements.inclination = 0.9, elements.eccentricity = 1e-3;
+  elements.mean_motion = 15.5 * 2 * kPi / 1440;
+  const auto orbit = std::make_shared<const Sgp4>(elements);
+  const SceneFrame frame(kPlace);
+  const TrackPtr track = orbit_track(orbit, frame, Clock(parse_iso8601(kUtc)), 0);
+  NightSkyLightSpec night;
+  night.scale = {};
+  night.satellites.push_back({"iss", orbit, 400, 0.3});
+  night.time.utc = kUtc;
+  night.place = kPlace;
+  SourceSpecs sources;
+  sources.add(night);
+  const Vec3 camera_at{0, 0, 2};
+  std::optional<double> lit, dark;
+  const auto share = [&](double t) {
+    const Dir to_sun = sun_at(frame, {}, instant_from_utc(parse_iso8601(kUtc)) + t).direction;
+    return SunlitPoint(track, frame, to_sun, 120).share(t, camera_at);
+  };
+  for (double t = 0; t < 40 * 86400 && !(lit && dark); t += 30) {
+    if (normalized(track->at(t).translation).z < 0.4) continue;
+    (share(t) > 0 ? lit : dark) = t;
+  }
+  ASSERT_TRUE(lit && dark);
+  const auto shot = [&](double t, double exposure) {
+    PlatformKit kit;
+    kit.render(ground(), sources,
+               camera(normalized(track->at(t + exposure / 2).translation - camera_at), 0, 0,
+                      strf("time_s: %g\nintegration_time_s: %g\n", t, exposure)));
+    return kit.shots.at(0);
+  };
+  const double t = std::round(*lit), expected = share(t) * solar_irradiance().mean(0.545, 0.555);
+  const Shot still = shot(t, 0);
+  EXPECT_NEAR(energy(still, 1e4) / expected, 1, 1e-4);
+  std::string table;
+  for (const TextFile& text : still.texts) table += text.text;
+  EXPECT_NE(table.find("\niss,"), table.npos);
+  // At 7 km/s and 400 to 800 km it crosses the 200 pixels of 1e-4 rad in some 2 s.
+  const Shot moving = shot(t, 0.5);
+  size_t pixels = 0;
+  for (const double L : moving.result.radiance) pixels += L > 0;
+  EXPECT_GT(pixels, 20u);
+  EXPECT_NEAR(energy(moving, 1e4) / expected, 1, 0.02);
+  EXPECT_EQ(energy(shot(std::round(*dark), 0), 1e4), 0);
+}
+
 // Starlight is unpolarised: half of it passes a polarizer, as Q and U of the light behind say, and none shows without.
 TEST(Stars, PolarizersTakeHalf) {
   const Dir star = sphere().without_air(kStar.place);
@@ -188,8 +171,8 @@ TEST(Stars, FaintOnesAndHiddenOnesAreNotListed) {
   // A board between camera and star.
   const Frame f = Frame::around(star);
   const Vec3 middle = Vec3{0, 0, 2} + star * 50;
-  const Mesh board = test::mesh_of({middle - f.x - f.y, middle + f.x - f.y, middle + f.x + f.y, middle - f.x + f.y},
-                                   {0, 1, 2, 0, 2, 3}, 0);
+  const Mesh board =
+      mesh_of({middle - f.x - f.y, middle + f.x - f.y, middle + f.x + f.y, middle - f.x + f.y}, {0, 1, 2, 0, 2, 3}, 0);
   PlatformKit hidden;
   hidden.render(ground({board}), stars_alone({kStar}), camera(star, 0, 0));
   EXPECT_TRUE(table_of(hidden.shots[0]).empty());
@@ -250,6 +233,38 @@ double energy_by_platform(double past, const std::string& readout) {
                  readout + "bands: [{name: v, center_um: 0.55, fwhm_um: 0.01, shape: rectangular}]}\n");
   EXPECT_EQ(kit.shots.size(), 1u);
   return energy(kit.shots[0], 1e4) / above(kStar);
+}
+
+// Electrons of a star in a lens of 50 mm, a throughput of 0.8, a quantum efficiency of 0.6, 0.5 to 0.9 um: for V = 0
+// and an even spectrum 3.631e-8 W/(m2 um) times 0.28 um2 / (h c) times the aperture are 4.82e7 a second, and 764 for V
+// = 12. A star of 6000 K by its own spectrum; G# = (1 + 4 N^2) / (pi tau), by which the camera counts, gathers 0.4 %
+// less than the aperture at f/8.
+TEST(Stars, ElectronsOfAnAperture) {
+  constexpr double kHc = 1.98644586e-25;  // J m
+  const double gathers = kPi / 4 * 0.05 * 0.05 * 0.8 * 0.6 * 1e-6 / kHc;
+  EXPECT_NEAR(kVegaIrradiance * (0.81 - 0.25) / 2 * gathers, 4.82e7, 0.01e7);
+  EXPECT_NEAR(kVegaIrradiance * flux_of(12) * (0.81 - 0.25) / 2 * gathers, 764, 1);
+  const Dir star = sphere().without_air(kStar.place);
+  PlatformKit kit;
+  kit.frame = SceneFrame(kPlace);
+  kit.render(
+      ground(), stars_alone({kStar}),
+      strf("kind: platform\nmotion: {kind: straight, position_m: [0, 0, 2], heading_deg: %.12g, speed_m_s: 0}\n"
+           "tasks: [{start: 0, stop: 0}]\ninstruments:\n  - name: i\n    rotate_deg: [%.12g, 0, 0]\n",
+           std::atan2(star.x, star.y) / kDegree, 90 + std::asin(star.z) / kDegree) +
+          "    focal_length_mm: 400\n    f_number: 8\n    throughput: 0.8\n"
+          "    arrays:\n      - {name: a, columns: 20, rows: 20, pitch_um: 10, paths: 4, integration_time_s: 0.5, "
+          "bands: [{name: v, center_um: 0.7, fwhm_um: 0.4, shape: rectangular}], detector: {quantum_efficiency: "
+          "0.6, gain_e_per_dn: 1000}}\n");
+  double electrons = 0, expected = 0;
+  for (const double n : kit.shots.at(0).products.at(0).values) electrons += n;
+  const Curve shape = star_shape(kStar.kelvin);
+  for (int i = 0; i < 4000; ++i) {
+    const double w = 0.5 + (i + 0.5) * 1e-4;
+    expected += shape.at(w) * w * 1e-4;
+  }
+  expected *= kVegaIrradiance * flux_of(kStar.v) * gathers * 0.5 * 256 / 257;
+  EXPECT_NEAR(electrons / expected, 1, 2e-3);
 }
 
 TEST(Stars, PlatformsSpreadThem) { EXPECT_NEAR(energy_by_platform(0.2, ""), 1, 1e-4); }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "light/night/glow_shells.h"
 #include "light/night/zodiacal.h"
 
 namespace suite::test {
@@ -34,6 +35,32 @@ TEST(NightUnits, S10AndMagnitudes) {
   EXPECT_NEAR(s10_of(22) * s10_radiance(), 2.44837e-6, 1e-10);
 }
 
+// All stars are 434.73 of V = 0 (1092 of V = 1, Seares 1925): 105.38 S10 in the mean, 82.46 of it, 78.2 %, fainter than
+// 6.5 (94.5593 are brighter), and a level plane gets a quarter of 2.54e-6 lx each: 2.7606e-4 lx.
+TEST(NightUnits, AllStars) {
+  const double degrees2 = 4 * kPi / (kDegree * kDegree);
+  EXPECT_NEAR(1092 * flux_of(1), kAllStars, 0.01);
+  EXPECT_NEAR(kAllStars / flux_of(10) / degrees2, 105.38, 0.005);
+  EXPECT_NEAR((kAllStars - 94.5593) / flux_of(10) / degrees2, 82.46, 0.005);
+  EXPECT_NEAR(1 - 94.5593 / kAllStars, 0.782, 6e-4);
+  EXPECT_NEAR(kAllStars / 4 * 2.54e-6, 2.7606e-4, 1e-8);
+}
+
+// Zodiacal light 60, airglow 72, the green line 67, stars 60: 259 S10 are V = 21.75, 2.16e-4 cd/m2 and, evenly, 6.8e-4
+// lx. Grass of 0.2 under it sends 6.175e-7 W/(m2 sr um): 0.62 electrons in a pixel of 10 um at f/1.4, 1/30 s, a
+// quantum efficiency of 0.6, 0.5 to 0.9 um.
+TEST(NightUnits, DarkSky) {
+  EXPECT_NEAR(magnitude_of(259), 21.75, 0.005);
+  const double luminance = 10.8e4 * flux_of(magnitude_of(259));
+  EXPECT_NEAR(luminance, 2.16e-4, 5e-7);
+  EXPECT_NEAR(kPi * luminance, 6.8e-4, 5e-6);
+  const double grass = 0.2 * 259 * s10_radiance();
+  EXPECT_NEAR(grass, 6.175e-7, 1e-10);    // 259 is rounded
+  constexpr double kHc = 1.98644586e-25;  // J m
+  const double photons = (0.81 - 0.25) / 2 * 1e-6 / kHc, optics = kPi / (1 + 4 * 1.4 * 1.4) * 1e-10;
+  EXPECT_NEAR(grass * optics * photons * 0.6 / 30, 0.62, 0.002);
+}
+
 // 1 R = 1e10 / (4 pi) photons/(m2 s sr).
 TEST(NightUnits, Rayleigh) {
   EXPECT_NEAR(rayleigh_radiance(250, 0.5577), 7.08608e-8, 1e-13);
@@ -58,6 +85,45 @@ double sum_of_lines(double low, double high) {
   return sum;
 }
 
+// A sensor at 400 km over the equator: 1 straight down, van Rhijn's 1 / cosine slantwise, and the chord of a ring along
+// the limb, 2 sqrt((R + h + t / 2)^2 - (R + h)^2) over the thickness t.
+TEST(GlowShells, SlantAndLimb) {
+  const double height = 87e3, thick = GlowShells::thickness(height), far = INFINITY;
+  const SceneFrame frame({0, 20, 0});
+  const GlowShells shells(frame, std::vector<double>{height, 270e3});
+  const Vec3 from{0, 0, 400e3};
+  EXPECT_NEAR(shells.share(0, from, {0, 0, -1}, far).near, 1, 1e-9);
+  constexpr double kEquator = 6378137.0;
+  // In the plane of the equator, where the shells are rings; angle from straight down.
+  const auto seen = [&](size_t layer, double nadir, double length) {
+    return shells.share(layer, from, {std::sin(nadir), 0, -std::cos(nadir)}, length);
+  };
+  const double slant = 0.9, sine = std::sin(slant) * (kEquator + 400e3) / (kEquator + height);
+  EXPECT_NEAR(seen(0, slant, far).near, 1 / std::sqrt(1 - sine * sine), 2e-4);
+  for (const double tangent : {82e3, 87e3, 60e3, 91.9e3}) {
+    const double nadir = std::asin((kEquator + tangent) / (kEquator + 400e3)), r = kEquator + tangent;
+    const auto half = [&](double top) { return top > r ? std::sqrt(top * top - r * r) : 0.0; };
+    const double chord = half(kEquator + height + thick / 2) - half(kEquator + height - thick / 2);
+    const GlowShells::Share s = seen(0, nadir, far);
+    EXPECT_NEAR(s.near, chord / thick, 1e-6 * chord / thick + 1e-6) << tangent;
+    EXPECT_NEAR(s.far, s.near, 1e-6 * s.near + 1e-6) << tangent;
+  }
+  // The limb is some 50 times as bright as the zenith, and nothing shines above it but higher layers.
+  const double limb = std::asin((kEquator + height) / (kEquator + 400e3)), above = limb + 0.02;
+  EXPECT_NEAR(seen(0, limb, far).near + seen(0, limb, far).far,
+              2 * std::sqrt(0.5 * thick * (2 * (kEquator + height) + 0.5 * thick)) / thick, 1e-3);
+  EXPECT_EQ(seen(0, above, far).near + seen(0, above, far).far, 0);
+  EXPECT_GT(seen(1, above, far).near, 1);
+  // Clipped by what stands before it, and behind a place below it.
+  EXPECT_EQ(seen(0, 0, 300e3).near, 0);
+  EXPECT_NEAR(seen(0, 0, 313e3).near, 0.5, 1e-9);
+  EXPECT_NEAR(shells.share(0, {0, 0, 61e3}, {0, 0, 1}, far).far, 1, 1e-9);
+  EXPECT_TRUE(shells.is_below({0, 0, 61e3}));
+  EXPECT_FALSE(shells.is_below({0, 0, 59e3}));
+  EXPECT_TRUE(shells.meets_earth(from, {0, 0, -1}));
+  EXPECT_FALSE(shells.meets_earth(from, {std::sin(limb), 0, -std::cos(limb)}));
+}
+
 // Sums of the list (Steed & Baker 1979): 1.4 to 1.8 um 5.0236e-6 W/(m2 sr).
 TEST(Airglow, LinesAddUpHoweverBinsCutThem) {
   EXPECT_NEAR(sum_of_lines(1.4, 1.8), 5.0236e-6, 1e-10);
@@ -75,6 +141,20 @@ TEST(Airglow, LinesAddUpHoweverBinsCutThem) {
 }
 
 // Smooth bands hold their rayleighs: photons of W/um.
+// The same in kilorayleigh: 51.28 from 1.4 to 1.8 um, 49.29 from 1.0 to 1.7 um, 80.93 in all.
+TEST(Airglow, LinesInRayleigh) {
+  const auto kilorayleigh = [](double low, double high) {
+    double sum = 0;
+    for (const GlowSpectrum::Line& line : airglow_layers(130).back().spectrum.lines)
+      if (line.wavelength_um >= low && line.wavelength_um < high)
+        sum += line.power / rayleigh_radiance(1000, line.wavelength_um);
+    return sum;
+  };
+  EXPECT_NEAR(kilorayleigh(1.4, 1.8), 51.28, 0.005);
+  EXPECT_NEAR(kilorayleigh(1.0, 1.7), 49.29, 0.005);
+  EXPECT_NEAR(kilorayleigh(0.5, 3), 80.93, 0.005);
+}
+
 TEST(Airglow, BandsHoldTheirPhotons) {
   const double rayleighs[] = {430, 1950, 1000, 20e3, 80e3};
   const std::vector<AirglowLayer> layers = airglow_layers(130);
