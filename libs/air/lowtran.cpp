@@ -1,7 +1,7 @@
 // Gas absorption on the spectra of LOWTRAN 7, by laws fitted line by line (band_fits) where there are, else by its own.
 //
-// LOWTRAN's band functions: T = exp(-(C U)^a) in 20 cm-1, each 5 cm-1, with the amount U
-// scaled by powers of p/p0 and T0/T of each band; continua of water, nitrogen (4.3 um) and oxygen (6.4 um), ozone in
+// LOWTRAN's band functions: T = exp(-(C U)^a) in 20 cm-1, each 5 cm-1, with the amount U scaled by powers of p/p0 and
+// T0/T of each band; continua of water, nitrogen (4.3 um) and oxygen (6.4 um), ozone in
 // the ultraviolet and visible, nitric acid, the Herzberg continuum.
 //
 // Assumes: of an exp(-(C U)^a) the k-distribution is the one-sided stable law of index a, scaled by C; so several
@@ -234,9 +234,9 @@ class Lowtran final : public GasProvider {
   double low_um() const override { return 1e4 / kHighest; }
   double high_um() const override { return 1e4 / kLowest; }
   std::string note() const override {
-    return "LOWTRAN 7 band functions, 20 cm-1; vertical transmittance against line-by-line: rms 0.03, at most 0.1 in "
-           "10 nm and "
-           "0.14 in 20 cm-1";
+    return std::string(laws_ == Laws::fitted ? "spectra of LOWTRAN 7, laws fitted line by line"
+                                             : "LOWTRAN 7 band functions") +
+           ", 20 cm-1; vertical transmittance against line-by-line: rms 0.03, at most 0.1 in 10 nm and 0.14 in 20 cm-1";
   }
 
   std::vector<GasLimit> limits() const override {
