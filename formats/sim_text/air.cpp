@@ -1,5 +1,6 @@
 #include "formats/sim_text/air.h"
 
+#include "air/lowtran.h"
 #include "base/files.h"
 #include "formats/air_table/air_table.h"
 #include "formats/hitran/hitran.h"
@@ -76,7 +77,8 @@ std::shared_ptr<const GasProvider> read_gases(const Params& p, std::vector<std::
   if (name == "builtin")
     return continuum ? builtin_gases(read_water_continuum(file_of(*continuum, "a CSV (formats/hitran)")))
                      : shared_builtin_gases();
-  const std::string path = file_of(*gases, "builtin, none, or a file of formats/air_table or formats/reptran");
+  if (name == "lowtran") return {std::shared_ptr<void>(), &lowtran_gases()};
+  const std::string path = file_of(*gases, "builtin, lowtran, none, or a file of formats/air_table or formats/reptran");
   if (!path.ends_with(".cdf")) return table_gases(read_air_table(path));
   ReadReptran read = read_reptran(path);
   for (const std::string& sentence : read.notes) notes.push_back(path + ": " + sentence);

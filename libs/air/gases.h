@@ -63,13 +63,12 @@ GasPoints gas_points(const GasProvider& provider, std::span<const AirLevel> leve
 // Vertical depth of each point over the levels; between them absorption runs exponentially (linearly to a zero).
 std::vector<double> vertical_depths(const GasPoints& points, std::span<const AirLevel> levels);
 
-// The band functions of LOWTRAN 7, 0.2 um to 1 mm; see lowtran.cpp. Its continuum of water is of 1988; the second form
-// takes another one instead. Error as check_continuum.
+// Spectra of LOWTRAN 7 with laws fitted line by line (band_fits.h), 0.2 um to 1 mm; lowtran.h has LOWTRAN itself. The
+// second form takes another continuum of water. Error as check_continuum.
 const GasProvider& builtin_gases();
 inline std::shared_ptr<const GasProvider> shared_builtin_gases() { return {std::shared_ptr<void>(), &builtin_gases()}; }
 std::unique_ptr<GasProvider> builtin_gases(WaterContinuum continuum);
-// LOWTRAN's continuum of water in the form of MT_CKD, to go with lines: 0 to 20000 cm-1. At 260 and 296 K it is the
-// same; between them self runs as a power, up to 8 % below LOWTRAN's straight line.
+// The builtin continuum of water in the form of MT_CKD, to go with lines: 0 to 20000 cm-1.
 WaterContinuum builtin_continuum();
 
 }  // namespace suite

@@ -1,5 +1,7 @@
-// Gas absorption after the band functions of LOWTRAN 7: T = exp(-(C U)^a) in 20 cm-1, each 5 cm-1, with the amount U
-// scaled by powers of p/p0 and T0/T of each band; continua of water, nitrogen (4.3 um) and oxygen (6.4 um), ozone in
+// Gas absorption on the spectra of LOWTRAN 7, by laws fitted line by line (band_fits) where there are, else by its own.
+//
+// LOWTRAN's band functions: T = exp(-(C U)^a) in 20 cm-1, each 5 cm-1, with the amount U scaled by powers of p/p0 and
+// T0/T of each band; continua of water, nitrogen (4.3 um) and oxygen (6.4 um), ozone in
 // the ultraviolet and visible, nitric acid, the Herzberg continuum.
 //
 // Assumes: of an exp(-(C U)^a) the k-distribution is the one-sided stable law of index a, scaled by C; so several
@@ -8,10 +10,12 @@
 // added, and the heads of oxygen's A and B bands, sharper (scripts/bake_air). Based on: F. X. Kneizys et al., "Users
 // guide to LOWTRAN 7", AFGL-TR-88-0177, 1988; the numbers in lowtran_table.inc. O4: G. D. Greenblatt et al., J.
 // Geophys. Res. 95, 1990 (peaks and widths of its bands).
+#include "air/lowtran.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "air/gases.h"
+#include "air/band_fits.h"
 #include "air/lowtran_limits.h"
 
 namespace suite {
@@ -33,7 +37,7 @@ constexpr double kLoschmidt = 2.6868e25;  // 1/m3 at 0 C, 1 atm, as LOWTRAN has 
 constexpr double kOneAtmosphere = 101325, kFreezing = 273.15, kAvogadro = 6.02214076e23;
 constexpr int kStep = 5, kLowest = 10, kHighest = 50000;  // cm-1
 constexpr double kHugginsLow = 27370, kFarLow = 40800;    // cm-1, where ozone's tables begin
-constexpr size_t kLawPoints = 16, kLawSize = 1 + 2 * kLawPoints;
+constexpr size_t kLawPoints = kBandLawPoints, kLawSize = 1 + 2 * kLawPoints;
 
 double ten_to(int tenth_thousandths) {
   return tenth_thousandths == -999999 ? 0.0 : std::pow(10.0, 1e-4 * tenth_thousandths);
@@ -61,24 +65,41 @@ double amount(const AirLevel& level, Gas gas) {
   return molecules / kLoschmidt * 100;
 }
 
-GasPoints points_of(const LowtranBand& band, int v, std::span<const AirLevel> levels) {
+enum class Laws { fitted, lowtran };
+
+// Of a band at a wavenumber: s = strength times the amount times powers of p/p0 and T0/T, and the law of the k of s.
+struct LawAt {
+  double strength, pressure, temperature;
+  const double *k, *weight;
+};
+LawAt law_at(const LowtranBand& band, int v, Laws laws) {
   const double* law = kLowtranLaws + band.law * kLawSize;
   const double strength = ten_to(kLowtranStrength[band.first + (v - band.low) / kStep]);
+  const BandFit* fit = laws == Laws::fitted ? band_fit(band.gas, v) : nullptr;
+  if (!fit) return {strength, band.pressure, band.temperature, law + 1, law + 1 + kLawPoints};
+  const double halving = strength / std::pow(std::log(2.0), 1 / law[0]);
+  const double* fitted = band_law(fit->law).data();
+  return {fit->strength * std::pow(halving, fit->contrast), fit->pressure, fit->temperature, fitted,
+          fitted + kLawPoints};
+}
+
+GasPoints points_of(const LowtranBand& band, int v, Laws laws, std::span<const AirLevel> levels) {
+  const LawAt law = law_at(band, v, laws);
   GasPoints out;
   std::vector<double> k;
   double total = 0;
   for (size_t g = 0; g < kLawPoints; ++g) {
-    if (!(law[1 + kLawPoints + g] > 0)) continue;
-    k.push_back(law[1 + g]);
-    out.weight.push_back(law[1 + kLawPoints + g]);
+    if (!(law.weight[g] > 0)) continue;
+    k.push_back(law.k[g]);
+    out.weight.push_back(law.weight[g]);
     total += out.weight.back();
   }
   for (double& w : out.weight) w /= total;
   out.absorption.reserve(levels.size() * k.size());
   for (const AirLevel& level : levels) {
-    const double air = level.pressure > 0 ? std::pow(level.pressure / kOneAtmosphere, band.pressure) : 0.0,
-                 scaled = strength * amount(level, band.gas) * air *
-                          std::pow(kFreezing / level.temperature, band.temperature);
+    const double air = level.pressure > 0 ? std::pow(level.pressure / kOneAtmosphere, law.pressure) : 0.0,
+                 scaled = law.strength * amount(level, band.gas) * air *
+                          std::pow(kFreezing / level.temperature, law.temperature);
     for (const double x : k) out.absorption.push_back(static_cast<float>(scaled * x));
   }
   return out;
@@ -88,19 +109,21 @@ GasPoints points_of(const LowtranBand& band, int v, std::span<const AirLevel> le
 struct WaterAt {
   double self_296, self_260, foreign;
 };
-WaterAt water_at(double v) {
+WaterAt water_at(double v, Laws laws) {
+  const ContinuumFactors f = laws == Laws::fitted ? continuum_factors(v) : ContinuumFactors{};
   const auto table = [&](const auto& t) { return interpolated(t, 0, 10, v, ten_to); };
   // LOWTRAN's correction around 1050 cm-1, and its far wings added to the foreign part.
   const double dip = 1 - 0.2333 * 40000 / ((v - 1050) * (v - 1050) + 40000);
   const double wings = 1 / (std::exp(2.75e-4 * v) / (1.025 * 3.159e-8) + std::exp(1.3e-3 * v) / 8.97e-6);
-  return {table(kWaterSelf296) * dip, table(kWaterSelf260) * dip, table(kWaterForeign296) + wings};
+  return {table(kWaterSelf296) * dip * f.self_296, table(kWaterSelf260) * dip * f.self_260,
+          (table(kWaterForeign296) + wings) * f.foreign};
 }
 
 // What a wavenumber needs of the smooth absorbers, so that levels only multiply.
-// continuum: of water, instead of LOWTRAN's; may be null and must outlive this.
+// continuum: of water, instead of the builtin one; may be null and must outlive this.
 class Smooth {
  public:
-  Smooth(double v, const WaterContinuum* continuum)
+  Smooth(double v, Laws laws, const WaterContinuum* continuum)
       : herzberg_(herzberg(v)),
         nitrogen_(interpolated(kNitrogen, 2080, 5, v)),
         oxygen_s_(interpolated(kOxygenS, 1395, 5, v) / 0.20946),
@@ -110,6 +133,7 @@ class Smooth {
         nitric_(nitric_acid(v)),
         complex_(oxygen_complex(v)),
         v_(v),
+        laws_(laws),
         continuum_(continuum) {
     if (!continuum_) water(v);
     if (v >= kHugginsLow && v < kFarLow) {
@@ -144,14 +168,19 @@ class Smooth {
              (share * continuum_->self_section(v_, level.temperature) +
               (1 - share) * continuum_->foreign_section(v_, level.temperature));
     }
-    // Self continuum: linear in temperature between 296 and 260 K, held outside.
-    const double cold = std::clamp((296 - level.temperature) / 36, 0.0, 1.0);
-    const double self = self_296_ + cold * (self_260_ - self_296_);
+    const double self = self_at(level.temperature);
     return (self * water * water + foreign_ * water * (relative - water)) * kLoschmidt * 1e-4 * 1e-20 /
            (kFreezing / 296);
   }
+  // A power of the temperature; LOWTRAN's is linear in it between 296 and 260 K and held outside.
+  double self_at(double temperature) const {
+    if (laws_ == Laws::fitted && self_296_ > 0 && self_260_ > 0)
+      return self_296_ * std::pow(self_260_ / self_296_, std::log(296 / temperature) / std::log(296.0 / 260));
+    const double cold = std::clamp((296 - temperature) / 36, 0.0, 1.0);
+    return self_296_ + cold * (self_260_ - self_296_);
+  }
   void water(double v) {
-    const WaterAt water = water_at(v);
+    const WaterAt water = water_at(v, laws_);
     self_296_ = water.self_296 * radiation_field(v, 296);
     self_260_ = water.self_260 * radiation_field(v, 260);
     foreign_ = water.foreign * radiation_field(v, 296);
@@ -190,6 +219,7 @@ class Smooth {
 
   double herzberg_, nitrogen_, oxygen_s_, oxygen_a_, oxygen_b_, ozone_, nitric_, complex_;
   double v_;
+  Laws laws_;
   const WaterContinuum* continuum_;
   double huggins_ = 0, huggins_1_ = 0, huggins_2_ = 0;  // m2, 1/K, 1/K2
   double self_296_ = 0, self_260_ = 0, foreign_ = 0;    // 1e-20 cm2
@@ -197,18 +227,21 @@ class Smooth {
 
 class Lowtran final : public GasProvider {
  public:
-  Lowtran() = default;
-  explicit Lowtran(WaterContinuum continuum) : continuum_(std::move(continuum)) { check_continuum(*continuum_); }
+  explicit Lowtran(Laws laws) : laws_(laws) {}
+  explicit Lowtran(WaterContinuum continuum) : laws_(Laws::fitted), continuum_(std::move(continuum)) {
+    check_continuum(*continuum_);
+  }
   double low_um() const override { return 1e4 / kHighest; }
   double high_um() const override { return 1e4 / kLowest; }
   std::string note() const override {
-    return "LOWTRAN 7 band functions, 20 cm-1; vertical transmittance against line-by-line: rms 0.03, at most 0.1 in "
-           "10 nm and "
-           "0.14 in 20 cm-1";
+    return std::string(laws_ == Laws::fitted ? "spectra of LOWTRAN 7, laws fitted line by line"
+                                             : "LOWTRAN 7 band functions") +
+           ", 20 cm-1; vertical transmittance against line-by-line: rms 0.03, at most 0.1 in 10 nm and 0.14 in 20 cm-1";
   }
 
   std::vector<GasLimit> limits() const override {
-    return limits_of_lowtran(continuum_ ? WaterOf::mt_ckd : WaterOf::lowtran);
+    if (laws_ == Laws::lowtran) return limits_of_lowtran();
+    return limits_of_builtin(continuum_ ? WaterOf::mt_ckd : WaterOf::builtin);
   }
 
   std::vector<Band> bands(double low_cm, double high_cm) const override {
@@ -224,22 +257,27 @@ class Lowtran final : public GasProvider {
   std::vector<GasPoints> absorbers(const Band& band, std::span<const AirLevel> levels) const override {
     const int v = static_cast<int>(band.index);
     std::vector<GasPoints> out(1);
-    const Smooth smooth(v, continuum_ ? &*continuum_ : nullptr);
+    const Smooth smooth(v, laws_, continuum_ ? &*continuum_ : nullptr);
     out[0].weight = {1.0};
     for (const AirLevel& level : levels) out[0].absorption.push_back(static_cast<float>(smooth.at(level)));
     for (const LowtranBand& b : kLowtranBands)
-      if (v >= b.low && v <= b.high) out.push_back(points_of(b, v, levels));
+      if (v >= b.low && v <= b.high) out.push_back(points_of(b, v, laws_, levels));
     return out;
   }
 
  private:
+  Laws laws_;
   std::optional<WaterContinuum> continuum_;
 };
 
 }  // namespace
 
 const GasProvider& builtin_gases() {
-  static const Lowtran lowtran;
+  static const Lowtran fitted(Laws::fitted);
+  return fitted;
+}
+const GasProvider& lowtran_gases() {
+  static const Lowtran lowtran(Laws::lowtran);
   return lowtran;
 }
 std::unique_ptr<GasProvider> builtin_gases(WaterContinuum continuum) {
@@ -249,7 +287,7 @@ std::unique_ptr<GasProvider> builtin_gases(WaterContinuum continuum) {
 WaterContinuum builtin_continuum() {
   WaterContinuum c{0, 10, {}, {}, {}};
   for (size_t i = 0; i < std::size(kWaterSelf296); ++i) {
-    const WaterAt water = water_at(c.step_cm * static_cast<double>(i));
+    const WaterAt water = water_at(c.step_cm * static_cast<double>(i), Laws::fitted);
     c.self.push_back(1e-20 * water.self_296);
     c.foreign.push_back(1e-20 * water.foreign);
     // So that it meets both temperatures of the tables.

@@ -56,7 +56,7 @@ No library of measured reflectances ships. Curves of the samples (grass, soil, a
 # What; key; where its names stand (a file and what encloses them), or the names; a table that NOTICE names, or the origin and the licence.
 ROWS = (
     ("atmospheres (AFGL 1986)", "`atmosphere: {profile: NAME}`", ("libs/air/profile.cpp", r"kProfiles\[\] = \{(.*?)\};"), "libs/air/afgl_table.inc"),
-    ("gas absorption, 20 1/cm", "`gases: builtin`", "band functions of LOWTRAN 7", "libs/air/lowtran_table.inc"),
+    ("gas absorption, 20 1/cm", "`gases: builtin`, `gases: lowtran`", "band functions of LOWTRAN 7 (`builtin`: with laws of libs/air/bands_table.inc)", "libs/air/lowtran_table.inc"),
     ("aerosols", "`aerosol: {model: NAME}`", ("libs/air/particle_tables.cpp", r"kAerosolNames\[\] = \{(.*?)\};"), "libs/air/tables/aerosols.inc"),
     ("desert aerosol", "`aerosol: {model: desert}`", "desert", "libs/air/tables/desert.inc"),
     ("clouds of water", "`clouds: [{kind: water}]`", "radius 2 to 32 um", "libs/air/tables/water_bulk.inc"),

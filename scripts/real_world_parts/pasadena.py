@@ -182,6 +182,6 @@ def run(context):
         result.notes.append(calibration_note(closures[0], closures[1]))
     result.notes.append("Surroundings: a dark target among brighter ground receives their light from the air (500 to 690 nm on the red field). No reflectance "
                         "of the surroundings was measured; the even ground of the table stands for them.")
-    result.notes.append("2.05 to 2.3 um: the band model of water, of LOWTRAN 7, absorbs too much on short paths, and so does its continuum. Down 1 km in midlatitude "
-                        "summer at 2.10 to 2.12 um: ours 0.918, with MT_CKD 0.924, MODTRAN 5.2.1 0.954 (section below).")
+    result.notes.append("2.05 to 2.3 um, down 1 km in midlatitude summer at 2.10 to 2.12 um: ours 0.947, with LOWTRAN 7 (`gases: lowtran`) 0.918, MODTRAN 5.2.1 0.954 "
+                        "(section below).")
     return result

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "air/gases.h"
+#include "air/lowtran.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -39,8 +39,9 @@ double through(const GasPoints& p, std::span<const AirLevel> levels, double path
   return sum;
 }
 
-double between_cm(std::span<const AirLevel> levels, double low_cm, double high_cm, int most, double path = 1) {
-  return through(gas_points(builtin_gases(), levels, 1e4 / high_cm, 1e4 / low_cm, points(most)), levels, path);
+double between_cm(std::span<const AirLevel> levels, double low_cm, double high_cm, int most, double path = 1,
+                  const GasProvider& gases = builtin_gases()) {
+  return through(gas_points(gases, levels, 1e4 / high_cm, 1e4 / low_cm, points(most)), levels, path);
 }
 
 // Root mean square and largest of differences.
@@ -66,7 +67,7 @@ TEST(GasAbsorption, IsLowtran) {
                  {36000, 0.0000}};
   const auto levels = levels_of(standard_profile("us_standard"));
   for (const auto& l : lowtran)
-    EXPECT_NEAR(between_cm(levels, l.v - 2.5, l.v + 2.5, 16), l.transmittance, 0.004) << l.v;
+    EXPECT_NEAR(between_cm(levels, l.v - 2.5, l.v + 2.5, 16, 1, lowtran_gases()), l.transmittance, 0.004) << l.v;
 }
 
 // MODTRAN (tape7.VISSun, tropical, ground to space, 0.40 to 0.75 um; means of 10 nm, LOWTRAN's Rayleigh and rural
@@ -126,7 +127,8 @@ TEST(GasAbsorption, FollowsReptranInTheThermalWindow) {
       const double low = 715 + 30 * static_cast<double>(i);
       d.add(between_cm(levels, low, low + 30, 8) - r.transmittance[i]);
     }
-    EXPECT_LT(d.rms(), 0.03) << gas_name(r.gas);
+    // LOWTRAN's carbon dioxide: 0.0245 rms.
+    EXPECT_LT(d.rms(), r.gas == Gas::co2 ? 0.02 : 0.03) << gas_name(r.gas);
     EXPECT_LT(d.largest, 0.10) << gas_name(r.gas);
     std::printf("REPTRAN %s: rms %.4f largest %.4f\n", std::string(gas_name(r.gas)).c_str(), d.rms(), d.largest);
   }
@@ -155,7 +157,7 @@ TEST(GasAbsorption, FollowsEcckdInTheNearInfrared) {
 // 15 pressures from 1 Pa on by factors of 2.2; 190, 215, 240, 265, 290 and 305 K).
 struct LineBand {
   Gas gas;
-  double low_cm, width_cm, rms, largest;  // limits of the builtin absorption
+  double low_cm, width_cm, rms, largest;  // limits of the builtin absorption; LOWTRAN's water exceeds its own
   std::vector<double> transmittance;
 };
 
@@ -181,19 +183,19 @@ TEST(GasAbsorption, FollowsLinesOfOxygenAndWater) {
        0.03,
        0.10,
        {0.9986, 0.9913, 0.9787, 0.9621, 0.9265, 0.8906, 0.8565, 0.9030, 0.6972, 0.9991, 1.0000}},
-      {Gas::h2o, 3440, 20, 0.03, 0.10, {0.1508, 0.1024, 0.0325, 0.0167, 0.0073, 0.0007, 0.0000, 0.0000,
-                                        0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000,
-                                        0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0001,
-                                        0.0009, 0.0018, 0.0539, 0.1685, 0.1820, 0.3097}},
+      {Gas::h2o, 3440, 20, 0.012, 0.04, {0.1508, 0.1024, 0.0325, 0.0167, 0.0073, 0.0007, 0.0000, 0.0000,
+                                         0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000,
+                                         0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0001,
+                                         0.0009, 0.0018, 0.0539, 0.1685, 0.1820, 0.3097}},
       {Gas::h2o,
        2930,
        30,
+       0.03,
        0.06,
-       0.10,
        {0.7935, 0.5897, 0.5072, 0.4748, 0.3994, 0.2775, 0.2273, 0.6825, 0.4085, 0.2882, 0.2470, 0.2334, 0.3132, 0.4202,
         0.2478, 0.2735, 0.2512}},
-      // LOWTRAN's continuum of water, of 1988, takes 43 % at 1970 cm-1 where MT_CKD takes 21 %.
-      {Gas::h2o, 1800, 30, 0.09, 0.25, {0.0013, 0.0071, 0.0414, 0.0589, 0.1645, 0.3728, 0.4198,
+      // Of the lines themselves only the main isotopologue: the others take some 0.03 here.
+      {Gas::h2o, 1800, 30, 0.06, 0.15, {0.0013, 0.0071, 0.0414, 0.0589, 0.1645, 0.3728, 0.4198,
                                         0.5557, 0.6255, 0.7328, 0.8167, 0.8152, 0.8989, 0.9212,
                                         0.9511, 0.9445, 0.9737, 0.9875, 0.9938, 0.9956}}};
   const auto all = levels_of(standard_profile("us_standard"));

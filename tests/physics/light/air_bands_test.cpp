@@ -165,7 +165,7 @@ TEST(AirBands, FootOfCarbonDioxideIsWithinItsReportedLimit) {
 // The worst of MODTRAN 5.2.1's paths (pybsm 0.16.1, Apache-2.0, atms/1874.bin and 3197.bin;
 // tests/bench/air_paths/compare) that go down with a cosine of about 0.2, and of all from 9.3 to 10.15 um (1814.bin,
 // 0.1), which exceeded a limit that fewer paths had been asked for: midlatitude summer, rural aerosol of 5 km, over a
-// target of 299 K. The limit of slanted paths holds; that of paths straight down does not.
+// target of 299 K. The limit of slanted paths holds; that of paths straight down does not in ozone's band.
 TEST(AirBands, SlantedPathsKeepWithinTheirReportedLimit) {
   struct Path {
     double height, range, low_um, high_um, modtran;  // m; K over the interval
@@ -199,12 +199,14 @@ TEST(AirBands, SlantedPathsKeepWithinTheirReportedLimit) {
     ASSERT_NE(limit, limits.end());
     std::printf("%.2f um: %.2f K off, reported %.2g K\n", middle, off, limit->kelvin_slanted.most);
     EXPECT_LE(off, limit->kelvin_slanted.most);
-    EXPECT_GT(off, limit->kelvin_down.most);
+    if (middle < 10.15) {
+      EXPECT_GT(off, limit->kelvin_down.most);
+    }
   }
 }
 
 // The continuum of water alone (MT_CKD 4, AER) where its lines are weak; ours has the lines, too, of which no list is
-// at hand there, and they show from 1105 cm-1 on. LOWTRAN's continuum is the stronger one: always too cold.
+// at hand there, and they show from 1105 cm-1 on. The builtin continuum is the stronger one, as older MT_CKD: too cold.
 TEST(AirBands, ThermalWindowsOfWater) {
   const std::vector<double> continuum = {296.10, 296.73, 297.21, 297.67, 298.02, 298.28, 298.53, 298.78, 298.97,
                                          299.12, 299.25, 299.34, 299.41, 299.45, 299.44, 299.35, 299.04};

@@ -121,7 +121,7 @@ TEST(GasBins, ThermalBandsWithin50Millikelvin) {
     EXPECT_NEAR(brightness_temperature(um[b], j.bands[b].chosen), kelvin, 0.05);
     worst_even = std::max(worst_even, std::fabs(brightness_temperature(um[b], j.bands[b].even) - kelvin));
   }
-  EXPECT_GT(worst_even, 0.2);
+  EXPECT_GT(worst_even, 0.1);
 }
 
 // Beside a light that is a million times brighter no bins are chosen for the ground's emission; what it lacks is known.

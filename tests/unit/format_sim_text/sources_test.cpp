@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "air/lowtran.h"
 #include "base/files.h"
 #include "formats/picture/picture.h"
 #include "formats/sim_text/sources.h"
@@ -52,6 +53,15 @@ TEST(Sources, AirIsReadAsItIsWritten) {
   const double middle[] = {0.55};
   EXPECT_NEAR(s.air->clouds[0].content * 500 * particle_optics(s.air->clouds[0].particles, middle).extinction(0), 5,
               1e-6);
+}
+
+TEST(Sources, GasesByName) {
+  const auto gases = [](const char* name) {
+    const SourceSpecs s = read(strf("atmosphere: {profile: tropical, gases: %s}", name));
+    return s.air->gases;
+  };
+  EXPECT_EQ(gases("builtin").get(), &builtin_gases());
+  EXPECT_EQ(gases("lowtran").get(), &lowtran_gases());
 }
 
 TEST(Sources, ParticlesOfAUser) {
