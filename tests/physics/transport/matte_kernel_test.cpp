@@ -157,7 +157,7 @@ TEST(MatteKernel, UnderAnyLightsAndInAir) {
   expect_same(court(), table, side_by_side(3));
   FarDisk disk = *moon.sun()->disk();
   disk.direction = {0.6, 0, 0.8};
-  moon.add(MoonSpec{{disk}, false, false, {}});
+  moon.add(MoonSpec{{disk}, false, false, false, {}});
   expect_same(court(), moon, side_by_side(3));
   air.atmosphere.emplace();
   expect_same(court(), air, side_by_side(3));
@@ -189,7 +189,7 @@ TEST(MatteKernel, IsNotTakenWhereItDoesNotServe) {
   table.lights.pop_back();
   table.add(SkySpec{Curve::constant(30), {1, 2, 1, 2}, 2, 2, false});
   EXPECT_EQ(kernel(court(), table), "matte");
-  moon.add(MoonSpec{{*plain.sun()->disk()}, false, false, {}});
+  moon.add(MoonSpec{{*plain.sun()->disk()}, false, false, false, {}});
   EXPECT_EQ(kernel(court(), moon), "matte");
   SourceSpecs air = plain;
   air.atmosphere.emplace();
