@@ -252,7 +252,7 @@ bool LidarJobs::run(Job& job, const std::shared_ptr<const Scene>& scene, const s
 
 bool LidarJobs::run(const std::shared_ptr<const Scene>& scene, const std::string& identity) {
   const StopInGoodOrder signals;
-  if (options_.resume && std::ranges::none_of(jobs_, [&](const auto& job) {
+  if (options_.resume && !jobs_.empty() && std::ranges::none_of(jobs_, [&](const auto& job) {
         return finished(*job) || file_exists(unfinished_file(options_, job->of.instrument));
       }))
     throw UsageError("there is nothing to continue from in " + options_.output + ": run without --resume");

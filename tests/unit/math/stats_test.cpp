@@ -68,6 +68,14 @@ TEST(Distributions, StudentQuantilesMatchTheTable) {
     EXPECT_NEAR(student_t_quantile(row.confidence, row.n), row.t, 0.00051) << row.confidence << " " << row.n;
 }
 
+// Two-sided quantiles of 0.95: 1.9623391 of 1000 degrees (summed term by term), 1.9599640 of a normal variable; between
+// them they fall as 2.37 / n (the first term of Abramowitz & Stegun 26.7.5).
+TEST(Distributions, StudentQuantilesOfManyDegrees) {
+  EXPECT_NEAR(student_t_quantile(0.95, 1000), 1.9623391, 1e-6);
+  EXPECT_NEAR(student_t_quantile(0.95, 1001), 1.9623391 - 2.37e-6, 2e-6);
+  EXPECT_NEAR(student_t_quantile(0.95, 1 << 30), 1.9599640, 1e-6);
+}
+
 TEST(Distributions, ChiSquareTailsMatchTheTable) {
   // Upper 5 % and 1 % points, Abramowitz & Stegun, table 26.8.
   const struct {
