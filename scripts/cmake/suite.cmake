@@ -74,6 +74,27 @@ function(suite_part name)
   install(TARGETS part_${name} LIBRARY DESTINATION lib/suite)
 endfunction()
 
+# suite_texts(<function> TYPE t HEADER h ENTRIES variable): writes <function>.cpp into the binary folder, which defines what the header
+# declares: a list of texts inside the library, so that no file is looked for when one is asked for.
+function(suite_texts function)
+  cmake_parse_arguments(A "" "TYPE;HEADER;ENTRIES" "" ${ARGN})
+  set(entries "${${A_ENTRIES}}")  # by its variable's name: as an argument it would be parted at semicolons
+  file(CONFIGURE OUTPUT ${function}.cpp CONTENT [[
+// Written by suite_texts() of scripts/cmake/suite.cmake.
+#include "@A_HEADER@"
+
+namespace suite {
+
+const std::vector<@A_TYPE@>& @function@() {
+  static const std::vector<@A_TYPE@> texts{
+@entries@  };
+  return texts;
+}
+
+}  // namespace suite
+]] @ONLY)
+endfunction()
+
 # suite_app(<name> SOURCES ... USES ... VENDOR ...): an executable of apps/. All but main.cpp go into a library so that tests can link it.
 function(suite_app name)
   cmake_parse_arguments(A "" "" "SOURCES;USES;VENDOR" ${ARGN})
