@@ -53,18 +53,42 @@ struct Ggx {
     const double c = dot(out, h);
     return c > 0 ? masking(out) * c * density(h) / out.z : 0;
   }
-  // out may point below the horizon too: the normals that a ray climbing out of a valley meets.
-  Dir visible_normal(Dir out, Vec2 u) const {
-    // Stretch to the hemisphere of unit roughness, sample the visible half disk, project back.
-    const Dir v = normalized({ax * out.x, ay * out.y, out.z});
-    const double s2 = v.x * v.x + v.y * v.y;
-    const Vec3 t1 = s2 > 0 ? Vec3{-v.y, v.x, 0} / std::sqrt(s2) : Vec3{1, 0, 0}, t2 = cross(v, t1);
-    const double r = std::sqrt(u.x), phi = 2 * kPi * u.y, s = 0.5 * (1 + v.z);
-    const double p1 = r * std::cos(phi), p2 = (1 - s) * std::sqrt(std::max(0.0, 1 - p1 * p1)) + s * r * std::sin(phi);
-    const Vec3 n = t1 * p1 + t2 * p2 + v * std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2));
-    return normalized({ax * n.x, ay * n.y, std::max(0.0, n.z)});
+  // Of a sample u of the unit square: its place on the disk, which does not depend on the view.
+  struct Sample {
+    double x = 0, radius = 0, sine = 0;  // of its azimuth
+  };
+  static Sample sample(Vec2 u) {
+    const double r = std::sqrt(u.x), phi = 2 * kPi * u.y;
+    return {r * std::cos(phi), r, std::sin(phi)};
   }
+  class View;
+  // out may point below the horizon too: the normals that a ray climbing out of a valley meets.
+  Dir visible_normal(Dir out, Vec2 u) const;
 };
+
+// The visible normals of one view: what does not depend on the sample. Tables take thousands of one view, and the same
+// samples for each.
+class Ggx::View {
+ public:
+  // Stretches to the hemisphere of unit roughness.
+  View(Ggx facets, Dir out) : facets_(facets), v_(normalized({facets.ax * out.x, facets.ay * out.y, out.z})) {
+    const double s2 = v_.x * v_.x + v_.y * v_.y;
+    t1_ = s2 > 0 ? Vec3{-v_.y, v_.x, 0} / std::sqrt(s2) : Vec3{1, 0, 0};
+    t2_ = cross(v_, t1_);
+  }
+  // Samples the visible half disk, projects back.
+  Dir normal(Sample sample) const {
+    const double s = 0.5 * (1 + v_.z);
+    const double p1 = sample.x, p2 = (1 - s) * std::sqrt(std::max(0.0, 1 - p1 * p1)) + s * sample.radius * sample.sine;
+    const Vec3 n = t1_ * p1 + t2_ * p2 + v_ * std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2));
+    return normalized({facets_.ax * n.x, facets_.ay * n.y, std::max(0.0, n.z)});
+  }
+
+ private:
+  Ggx facets_;
+  Vec3 v_, t1_, t2_;
+};
+inline Dir Ggx::visible_normal(Dir out, Vec2 u) const { return View(*this, out).normal(sample(u)); }
 
 // Points of the unit square for averages over visible normals when a model is baked (the first points of Sobol's
 // sequence; count a power of two up to 2^16).
@@ -75,6 +99,14 @@ inline std::vector<Vec2> baking_points(uint32_t count) {
     points[i] = {unit_double(x[0]) + 0.5 / count, unit_double(x[1]) + 0.5 / count};
   }
   return points;
+}
+// The same as samples of Facets (Ggx, GaussFacets), for their View::normal.
+template <class Facets>
+std::vector<typename Facets::Sample> baking_samples(uint32_t count) {
+  std::vector<typename Facets::Sample> samples;
+  samples.reserve(count);
+  for (const Vec2 u : baking_points(count)) samples.push_back(Facets::sample(u));
+  return samples;
 }
 
 }  // namespace suite

@@ -28,6 +28,8 @@ class DoubleTracer {
     for (uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     nodes_.reserve(2 * order_.size());
     if (!order_.empty()) build(0, static_cast<uint32_t>(order_.size()));
+    in_order_.reserve(order_.size());
+    for (const uint32_t i : order_) in_order_.push_back(triangles_[i]);  // a leaf's lie side by side
   }
   const Triangle& triangle(uint32_t i) const { return triangles_[i]; }
   size_t size() const { return triangles_.size(); }
@@ -36,20 +38,29 @@ class DoubleTracer {
   Met meet(Vec3 origin, Dir direction, uint32_t except, double reach = INFINITY, bool any = false) const {
     Met met;
     met.distance = reach;
-    const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
-    uint32_t stack[128], top = 0;
-    stack[top++] = 0;
-    while (top && !nodes_.empty()) {
-      const Node& node = nodes_[stack[--top]];
-      if (!enters(node.box, origin, inverse, met.distance)) continue;
+    // Never infinite: a direction within a face's plane that begins in it must not give 0 times infinity.
+    const auto invert = [](double d) { return 1 / (std::abs(d) < 1e-200 ? std::copysign(1e-200, d) : d); };
+    const Vec3 inverse{invert(direction.x), invert(direction.y), invert(direction.z)};
+    Entry stack[128];
+    uint32_t top = 0;
+    if (!nodes_.empty()) stack[top++] = {0, entry(nodes_[0].box, origin, inverse)};
+    while (top) {
+      const Entry entered = stack[--top];
+      if (entered.distance > met.distance * (1 + 1e-14) + 1e-300) continue;
+      const Node& node = nodes_[entered.node];
       if (!node.count) {
-        stack[top++] = node.first, stack[top++] = node.second;
+        // The nearer child is looked into first: what it holds often rules the other out.
+        Entry near{node.first, entry(nodes_[node.first].box, origin, inverse)};
+        Entry far{node.second, entry(nodes_[node.second].box, origin, inverse)};
+        if (far.distance < near.distance) std::swap(near, far);
+        if (far.distance < INFINITY) stack[top++] = far;
+        if (near.distance < INFINITY) stack[top++] = near;
         continue;
       }
       for (uint32_t k = node.first; k < node.first + node.count; ++k) {
         const uint32_t i = order_[k];
         double t;
-        if (i == except || !hits(triangles_[i], origin, direction, t) || t >= met.distance) continue;
+        if (i == except || !hits(in_order_[k], origin, direction, t) || t >= met.distance) continue;
         met.distance = t;
         met.triangle = i;
         if (any) return met;
@@ -64,15 +75,19 @@ class DoubleTracer {
     uint32_t first = 0, second = 0, count = 0;  // children, or a range of order_
   };
 
-  static bool enters(const Box3& box, Vec3 origin, Vec3 inverse, double reach) {
-    double near = 0, far = reach;
-    for (int i = 0; i < 3; ++i) {
-      const double a = (box.low[i] - origin[i]) * inverse[i], b = (box.high[i] - origin[i]) * inverse[i];
-      if (std::isnan(a) || std::isnan(b)) continue;  // in the face itself
-      near = std::max(near, std::min(a, b));
-      far = std::min(far, std::max(a, b));
-    }
-    return near <= far * (1 + 1e-14) + 1e-300;
+  struct Entry {
+    uint32_t node;
+    double distance;  // to the box, m
+  };
+
+  // The way to the box, infinite if the ray misses it.
+  static double entry(const Box3& box, Vec3 origin, Vec3 inverse) {
+    const Vec3 a = box.low - origin, b = box.high - origin;
+    const double x1 = a.x * inverse.x, x2 = b.x * inverse.x, y1 = a.y * inverse.y, y2 = b.y * inverse.y,
+                 z1 = a.z * inverse.z, z2 = b.z * inverse.z;
+    const double near = std::max(std::max(std::min(x1, x2), std::min(y1, y2)), std::max(std::min(z1, z2), 0.0));
+    const double far = std::min(std::min(std::max(x1, x2), std::max(y1, y2)), std::max(z1, z2));
+    return near <= far * (1 + 1e-14) + 1e-300 ? near : INFINITY;
   }
 
   static bool hits(const Triangle& q, Vec3 origin, Dir direction, double& t) {
@@ -113,7 +128,7 @@ class DoubleTracer {
   }
   static Vec3 centre(const Triangle& q) { return (q.a + q.b + q.c) / 3.0; }
 
-  std::vector<Triangle> triangles_;
+  std::vector<Triangle> triangles_, in_order_;
   std::vector<uint32_t> order_;
   std::vector<Node> nodes_;
 };

@@ -63,14 +63,16 @@ template <class Facets>
 FacetTables<Facets>::FacetTables(Roughness roughness) {
   const Facets facets{roughness.x, roughness.y};
   const bool isotropic = facets.ax == facets.ay;
-  const std::vector<Vec2> points = baking_points(Facets::kBakingPoints);
+  const auto samples = baking_samples<Facets>(Facets::kBakingPoints);
   single_ = DirectionalTable(facets.ax, facets.ay, kRows, kAngles, [&](Dir o, std::span<float> once) {
     std::vector<double> hats(kAngles);
-    for (const Vec2 u : points) {
-      const Dir h = facets.visible_normal(o, u);
+    const typename Facets::View view(facets, o);
+    const double lambda = facets.lambda(o), masking = 1 / (1 + lambda);
+    for (const typename Facets::Sample& sample : samples) {
+      const Dir h = view.normal(sample);
       const double c = dot(o, h);
       const Dir in = h * (2 * c) - o;
-      if (in.z > 0 && c > 0) add_hat(c, facets.shadowing(o, in) / facets.masking(o) / Facets::kBakingPoints, hats);
+      if (in.z > 0 && c > 0) add_hat(c, 1 / (1 + lambda + facets.lambda(in)) / masking / Facets::kBakingPoints, hats);
     }
     std::copy(hats.begin(), hats.end(), once.begin());
   });

@@ -40,29 +40,6 @@ double inverse_erf(double t) {
   return x - (std::erf(x) - t) * 0.5 * kRootPi * std::exp(x * x);
 }
 
-// Slope m towards the viewer, of unit roughness, that a view along (sine, cosine) to the normal sees with density
-// max(0, cosine + m sine) exp(-m^2): the distribution is inverted by Newton's steps within a bracket, from where a fit
-// says (W. Jakob, "An improved visible normal sampling routine for the Beckmann distribution", 2014).
-double visible_slope(double cosine, double sine, double u) {
-  if (sine < 1e-9) return inverse_erf(2 * u - 1);
-  const double least = -cosine / sine, edge = std::exp(-least * least), erf_least = std::erf(least);
-  double low = std::max(least, -6.0), high = std::max(low, 0.0) + 6;
-  // Integral of the density from the least slope that is seen, times 2 / sqrt(pi).
-  const double wanted = u * (cosine * (1 - erf_least) + sine / kRootPi * edge);
-  const double theta = std::atan2(sine, cosine), fit = 1 + theta * (-0.876 + theta * (0.4265 - 0.0594 * theta));
-  double m = std::clamp(about_inverse_erf(inside(erf_least + (1 - erf_least) * std::pow(u, fit))), low, high);
-  for (int step = 0; step < 40; ++step) {
-    const double fall = std::exp(-m * m), below = cosine * (std::erf(m) - erf_least) + sine / kRootPi * (edge - fall);
-    const double miss = below - wanted, density = 2 / kRootPi * (cosine + m * sine) * fall;
-    (miss > 0 ? high : low) = m;
-    const double next = density > 0 ? m - miss / density : low;
-    const double old = m;
-    m = next > low && next < high ? next : 0.5 * (low + high);
-    if (std::fabs(m - old) < 1e-7) break;  // what is left is the square of that
-  }
-  return m;
-}
-
 }  // namespace
 
 double GaussFacets::density(Dir h) const {
@@ -78,12 +55,49 @@ double GaussFacets::lambda(Dir d) const {
   return v > 6 ? 0 : std::max(0.0, 0.5 * (std::exp(-v * v) / (v * kRootPi) - std::erfc(v)));
 }
 
-Dir GaussFacets::visible_normal(Dir out, Vec2 u) const {
-  // Stretch to slopes of unit roughness, turn the view into x, sample both slopes, turn and press back.
-  const Dir v = normalized({ax * out.x, ay * out.y, out.z});
-  const double sine = std::sqrt(v.x * v.x + v.y * v.y), cx = sine > 0 ? v.x / sine : 1, cy = sine > 0 ? v.y / sine : 0;
-  const double m = visible_slope(v.z, sine, u.x), across = inverse_erf(2 * u.y - 1);
-  return normalized({ax * (cx * m - cy * across), ay * (cy * m + cx * across), 1});
+GaussFacets::Sample GaussFacets::sample(Vec2 u) { return {u.x, inverse_erf(2 * u.y - 1)}; }
+
+// Stretches to slopes of unit roughness and turns the view into x.
+GaussFacets::View::View(GaussFacets facets, Dir out) : facets_(facets) {
+  const Dir v = normalized({facets.ax * out.x, facets.ay * out.y, out.z});
+  cosine_ = v.z;
+  sine_ = std::sqrt(v.x * v.x + v.y * v.y);
+  cx_ = sine_ > 0 ? v.x / sine_ : 1;
+  cy_ = sine_ > 0 ? v.y / sine_ : 0;
+  if (sine_ < 1e-9) return;
+  least_ = -cosine_ / sine_;
+  edge_ = std::exp(-least_ * least_);
+  erf_least_ = std::erf(least_);
+  // Integral of the density from the least slope that is seen, times 2 / sqrt(pi).
+  total_ = cosine_ * (1 - erf_least_) + sine_ / kRootPi * edge_;
+  const double theta = std::atan2(sine_, cosine_);
+  fit_ = 1 + theta * (-0.876 + theta * (0.4265 - 0.0594 * theta));
+}
+
+// Slope m towards the viewer, of unit roughness, that a view along (sine, cosine) to the normal sees with density
+// max(0, cosine + m sine) exp(-m^2): the distribution is inverted by Newton's steps within a bracket, from where a fit
+// says (W. Jakob, "An improved visible normal sampling routine for the Beckmann distribution", 2014).
+double GaussFacets::View::slope(double u) const {
+  if (sine_ < 1e-9) return inverse_erf(2 * u - 1);
+  double low = std::max(least_, -6.0), high = std::max(low, 0.0) + 6;
+  const double wanted = u * total_;
+  double m = std::clamp(about_inverse_erf(inside(erf_least_ + (1 - erf_least_) * std::pow(u, fit_))), low, high);
+  for (int step = 0; step < 40; ++step) {
+    const double fall = std::exp(-m * m),
+                 below = cosine_ * (std::erf(m) - erf_least_) + sine_ / kRootPi * (edge_ - fall);
+    const double miss = below - wanted, density = 2 / kRootPi * (cosine_ + m * sine_) * fall;
+    (miss > 0 ? high : low) = m;
+    const double next = density > 0 ? m - miss / density : low;
+    const double old = m;
+    m = next > low && next < high ? next : 0.5 * (low + high);
+    if (std::fabs(m - old) < 1e-7) break;  // what is left is the square of that
+  }
+  return m;
+}
+
+Dir GaussFacets::View::normal(Sample s) const {
+  const double m = slope(s.u);
+  return normalized({facets_.ax * (cx_ * m - cy_ * s.across), facets_.ay * (cy_ * m + cx_ * s.across), 1});
 }
 
 }  // namespace suite

@@ -20,7 +20,28 @@ struct GaussFacets {
   double lambda(Dir d) const;
   double masking(Dir d) const { return 1 / (1 + lambda(d)); }
   double shadowing(Dir a, Dir b) const { return 1 / (1 + lambda(a) + lambda(b)); }
+  // Of a sample u of the unit square: what does not depend on the view.
+  struct Sample {
+    double u = 0, across = 0;  // `across` in units of the roughness
+  };
+  static Sample sample(Vec2 u);
+  class View;
   Dir visible_normal(Dir out, Vec2 u) const;  // out may point below the horizon too
 };
+
+// The visible normals of one view: what does not depend on the sample. Tables take thousands of one view, and the same
+// samples for each.
+class GaussFacets::View {
+ public:
+  View(GaussFacets facets, Dir out);
+  Dir normal(Sample s) const;
+
+ private:
+  double slope(double u) const;
+  GaussFacets facets_;
+  double cosine_, sine_, cx_, cy_;  // of the view over slopes of unit roughness, and its azimuth
+  double least_ = 0, edge_ = 0, erf_least_ = 0, total_ = 0, fit_ = 0;
+};
+inline Dir GaussFacets::visible_normal(Dir out, Vec2 u) const { return View(*this, out).normal(sample(u)); }
 
 }  // namespace suite

@@ -78,12 +78,13 @@ RoughInterface::RoughInterface(Kind kind) : facets_{kind.roughness, kind.roughne
 }
 
 RoughInterface::Row RoughInterface::make_row(int side, double mu, size_t number) const {
-  static const std::vector<Vec2> points = baking_points(kPoints);
+  static const auto samples = baking_samples<Ggx>(kPoints);
   const Dir o{std::sqrt((1 - mu) * (1 + mu)), 0, mu};
   const double eta = side == 0 ? index_ : 1 / index_, masking = facets_.masking(o);
   Row row;
-  for (const Vec2 u : points) {
-    const Dir h = facets_.visible_normal(o, u);
+  const Ggx::View view(facets_, o);
+  for (const Ggx::Sample& sample : samples) {
+    const Dir h = view.normal(sample);
     const double c = std::min(1.0, dot(o, h));
     if (!(c > 0)) continue;
     const Fresnel f = fresnel_dielectric(c, eta);
