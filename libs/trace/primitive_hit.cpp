@@ -151,35 +151,43 @@ struct Waves {
       bound2 += std::fabs(a[i]) * k * k;
     }
   }
-  // Height of the ray over the surface, and its slope.
-  double f(double t, double* slope = nullptr) const {
-    double value = o.z + t * d.z, derivative = d.z;
+  // Height of the ray over the surface, and how it changes along the ray.
+  struct Height {
+    double value, slope;
+  };
+  Height f(double t) const {
+    Height height{o.z + t * d.z, d.z};
     for (size_t i = 2; i < a.size(); i += 4) {
       const double phase = a[i + 1] * (o.x + t * d.x) + a[i + 2] * (o.y + t * d.y) + a[i + 3];
-      value -= a[i] * std::sin(phase);
-      if (slope) derivative -= a[i] * std::cos(phase) * (a[i + 1] * d.x + a[i + 2] * d.y);
+      height.value -= a[i] * std::sin(phase);
+      height.slope -= a[i] * std::cos(phase) * (a[i + 1] * d.x + a[i + 2] * d.y);
     }
-    if (slope) *slope = derivative;
-    return value;
+    return height;
+  }
+  // Root between `low` and `high` where f is monotonic, or infinity: Newton's steps; halves where they leave the
+  // bracket or do not end.
+  double only_root(double low, double high) const {
+    const double from = f(low).value, to = f(high).value;
+    if (from == 0) return low;
+    if ((from < 0) == (to < 0)) return INFINITY;
+    double t = std::clamp(low - from * (high - low) / (to - from), low, high);
+    for (int i = 0; i < 200; ++i) {
+      const Height height = f(t);
+      ((height.value < 0) == (from < 0) ? low : high) = t;
+      const double newton = t - height.value / height.slope, before = t;
+      t = i < 20 && newton > low && newton < high ? newton : 0.5 * (low + high);
+      // Such a step of Newton's leaves its square, or what rounding leaves.
+      const double enough = t == newton ? 1e-11 : 1e-15;
+      if (std::fabs(t - before) <= enough * std::fabs(t) || high - low <= 1e-15 * std::fabs(high)) break;
+    }
+    return t;
   }
   // First root in (low, high), or infinity.
   double root(double low, double high, int depth) const {
     const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
-    double slope = 0;
-    const double value = f(middle, &slope);
-    if (std::fabs(value) > bound1 * half) return INFINITY;
-    if (std::fabs(slope) > bound2 * half || depth == 60) {  // monotonic: bisection finds the only root
-      double a0 = low, b0 = high;
-      const double fa = f(a0), fb = f(b0);
-      if (fa == 0) return a0;
-      if ((fa < 0) == (fb < 0)) return INFINITY;
-      for (int i = 0; i < 200 && b0 - a0 > 1e-15 * std::fabs(b0); ++i) {
-        const double m = 0.5 * (a0 + b0);
-        if (m == a0 || m == b0) break;
-        ((f(m) < 0) == (fa < 0) ? a0 : b0) = m;
-      }
-      return 0.5 * (a0 + b0);
-    }
+    const Height height = f(middle);
+    if (std::fabs(height.value) > bound1 * half) return INFINITY;
+    if (std::fabs(height.slope) > bound2 * half || depth == 60) return only_root(low, high);
     const double first = root(low, middle, depth + 1);
     return std::isfinite(first) ? first : root(middle, high, depth + 1);
   }
