@@ -71,13 +71,14 @@ def run(campaign: FileName | Campaign, folder: FileName, *, workers: int | None 
             _write_lists(campaign, folder, version)
     except OSError as problem:
         raise CampaignError(f"the dataset cannot be written: {problem}", "room, and the right to write; the same command goes on", str(folder)) from None
-    _tell_refused(tally, campaign.samples)
+    _tell_refused(tally)
     return Outcome(folder, tally, complete)
 
 
-def _tell_refused(tally: Tally, samples: int) -> None:
+def _tell_refused(tally: Tally) -> None:
     """Refused: some samples were, with the first message and the numbers."""
     if count := len(tally.refused):
+        samples = tally.made + tally.there + count
         numbers = ", ".join(map(str, sorted(tally.refused)[:NAMED])) + (" ..." if count > NAMED else "")
         raise Refused(f"{tally.first_refusal()} ({count} of {samples} samples {'was' if count == 1 else 'were'} refused: {numbers}; the others are there)")
 
@@ -101,8 +102,9 @@ def preview(campaign: FileName | Campaign, path: FileName, *, workers: int | Non
         check_ends(campaign, version)
         tally = run_samples(campaign, folder, [i * campaign.samples // count for i in range(count)], os.cpu_count() or 1 if workers is None else workers,
                             version, lambda _: None)
-        _tell_refused(tally, count)
-        write_sheet(folder, list(images(folder)), Path(path))
+        if tally.made:
+            write_sheet(folder, list(images(folder)), Path(path))
+        _tell_refused(tally)
     return Path(path)
 
 
