@@ -146,7 +146,7 @@ def _count(answer: dict[str, Any], tally: Tally, wanted: int, who: str, tell: Te
     if "error" in answer:
         raise Refused(str(answer["error"]))
     if "refused" in answer:
-        tell(str(answer["refused"]))
+        tell(f"sample {answer['sample']}: refused")
         tally.refuse(answer["sample"], str(answer["refused"]))
         return
     tally.made += 1

@@ -1,10 +1,13 @@
-"""Campaigns with what simulations have besides cameras in sunlight: presets of instruments, Stokes vectors, laser radars, the night's sky."""
+"""Campaigns with what simulations have besides cameras in sunlight: presets of instruments, Stokes vectors, laser radars, the night's sky;
+and with samples that are refused."""
 import json
+import subprocess
+import sys
 import unittest
 
 import numpy as np
-from kit import CAMPAIGN, SCENE, SIMULATION, Case, hashes
-from remote_scenes.campaign import forecast, read_campaign, run
+from kit import CAMPAIGN, SCENE, SIMULATION, SOME_REFUSED, Case, hashes
+from remote_scenes.campaign import CampaignError, forecast, preview, read_campaign, run
 from remote_scenes.envi import read_values
 from remote_scenes.lidar import read_points
 
@@ -82,6 +85,20 @@ class Combined(Case):
         dim, bright = (float(np.mean(read_values(folder / f"samples/{i:06d}/chip.img"))) for i in range(2))
         self.assertTrue(1e-7 < 1.5 * dim < bright < 1e-4, (dim, bright))
         self.assertEqual([r["values"]["simulation.night_sky.scale.airglow"] for r in records], [0.5, 3])
+
+
+class Refused(Case):
+    def test_samples_that_a_worker_refuses(self):
+        """As by the process itself (engine_test.py); the forecast and the preview take what can be made."""
+        path = self.write(SOME_REFUSED)
+        done = subprocess.run([sys.executable, "-B", "-m", "remote_scenes.campaign", path, "-o", self.folder / "out", "--workers", "2", "-q"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1, done)
+        self.assertRegex(done.stderr, r"^\S*campaign.yaml:\d+:\d+: error: sample 0: .*\(2 of 3 samples were refused: 0, 2; the others are there\)\n$")
+        self.assertEqual([p.name for p in (self.folder / "out/samples").iterdir()], ["000001"])
+        self.assertEqual(forecast(read_campaign(path), "v", 1).pilots, 1)
+        with self.assertRaisesRegex(CampaignError, "2 of 3 samples were refused"):
+            preview(path, self.folder / "sheet.png", workers=1)
+        self.assertTrue((self.folder / "sheet.png").is_file())
 
 
 if __name__ == "__main__":

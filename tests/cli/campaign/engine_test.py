@@ -1,9 +1,12 @@
 """The engine: the same bytes with any number of workers, after kill -9 and by shards; refusals that leave nothing half-written; and what is written
 when all samples are there, read by decoders of the tests' own."""
+import contextlib
 import gzip
+import io
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,11 +15,13 @@ import time
 import unittest
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
-from kit import CAMPAIGN, SCENE, SIMULATION, Case, hashes
+from kit import CAMPAIGN, SCENE, SIMULATION, SOME_REFUSED, Case, hashes
 from remote_scenes.campaign import CampaignError, forecast, read_campaign, run
+from remote_scenes.campaign.__main__ import main
 from remote_scenes.campaign.engine import IN_A_ROW, Tally, prepare_folder, run_samples
 from remote_scenes.campaign.exports import images
 from remote_scenes.campaign.label_files import write_coco
@@ -265,19 +270,22 @@ class Refusals(Case):
         self.assertEqual([p for p in self.folder.glob("out/samples/*")], [])
 
     def test_one_sample_of_many_is_refused(self):
-        """The first, one in the middle, and the last: the others are made and in the lists, one message names them, and the command ends with 1."""
-        rows = "{from: [-9, 0], to: [9, 0], count: 2, heading_deg: 0}"
-        text = (CAMPAIGN.replace("samples: 5", "samples: 4\nformats: [coco]").replace("{polygons: [[[-12, -12], [12, -12], [12, 12], [-12, 12]]]}", f"{{rows: [{rows}]}}")
-                .replace("{choice: [0.08, 0.12]}", "0.1").replace("{uniform: [20, 60]}", "30").replace("vary:\n", "vary:\n  n: {grid: [3, 1, 2, 4]}\n")
-                .replace("{integers: [3, 5]}", "$n"))
-        path, folder = self.write(text), self.folder / "out"
-        for workers in ("0", "1"):
-            done = subprocess.run(command(path, folder, "--workers", workers, "-q"), capture_output=True, text=True)
-            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done)
-            self.assertRegex(done.stderr, r"campaign.yaml:\d+:\d+: error: sample 0: .*\(2 of 4 samples were refused: 0, 3; the others are there\)")
-            self.assertEqual(sorted(p.name for p in (folder / "samples").iterdir()), ["000001", "000002"])
-            self.assertEqual([i["file_name"][8:14] for i in json.loads((folder / "annotations.json").read_text())["images"]], ["000001", "000002"])
-        self.assertEqual(forecast(read_campaign(path), "v", 1).pilots, 1)
+        """The first and the last: the others are made and in the lists, one message names them, and the command ends with 1. By a worker: combined_test.py."""
+        path, folder, said = self.write(SOME_REFUSED), self.folder / "out", io.StringIO()
+        with contextlib.redirect_stderr(said):
+            self.assertEqual(main([str(path), "-o", str(folder), "--workers", "0", "-q"]), 1)
+        self.assertRegex(said.getvalue(), r"^\S*campaign.yaml:\d+:\d+: error: sample 0: .*\(2 of 3 samples were refused: 0, 2; the others are there\)\n$")
+        self.assertEqual([p.name for p in (folder / "samples").iterdir()], ["000001"])
+        self.assertEqual([i["file_name"][8:14] for i in json.loads((folder / "annotations.json").read_text())["images"]], ["000001"])
+
+    def test_workers_that_end_without_an_answer(self):
+        """After three of them a sample counts as refused, and the others have their turn."""
+        campaign = read_campaign(self.write())
+        prepare_folder(campaign, self.folder / "out")
+        with mock.patch.object(sys, "executable", shutil.which("false")):
+            tally = run_samples(campaign, self.folder / "out", range(2), 2, "v", lambda _: None)
+        self.assertEqual((tally.made, tally.deaths, sorted(tally.refused)), (0, 6, [0, 1]))
+        self.assertIn("3 workers ended without an answer at sample 1 (the last one with 1); memory", tally.refused[1])
 
     def test_many_refusals_end_the_run(self):
         """Ten in a row: what they have in common is not looked for in all others. One that is made begins the count anew."""
