@@ -19,7 +19,9 @@ from .text import CampaignError
 
 
 def _arguments() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m remote_scenes.campaign", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m remote_scenes.campaign", description=__doc__,
+                                     epilog="exit code: 0 done, 1 something was refused (samples that are refused alone are named when the others are made), 2 wrong usage, "
+                                     "130 stopped")
     parser.add_argument("campaign", help="the campaign's text (docs/guide/campaigns.md)")
     parser.add_argument("-o", "--output", metavar="FOLDER", help="the dataset; what is finished there stays, so that the same command goes on")
     parser.add_argument("--workers", type=_count, metavar="N", help="worker processes; one per core unless given; the samples do not depend on it")
@@ -28,7 +30,7 @@ def _arguments() -> argparse.ArgumentParser:
     parser.add_argument("--dry-run", action="store_true", help="check the ends of all distributions and forecast hours, bytes and errors from two samples")
     parser.add_argument("--preview", metavar="FILE.png", help="twelve samples with their labels on one sheet")
     parser.add_argument("--texts", type=_count, metavar="SAMPLE", help="write the texts and prepared scenes of one sample into the folder of -o")
-    parser.add_argument("--slurm", type=_count, metavar="N", help="print a script for sbatch: an array of N shards")
+    parser.add_argument("--slurm", type=_count, metavar="N", help="print a script for sbatch: an array of N shards of the folder of -o")
     parser.add_argument("-q", "--quiet", action="store_true", help="no progress")
     return parser
 

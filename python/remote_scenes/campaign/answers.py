@@ -7,21 +7,24 @@ import resource
 import time
 from pathlib import Path
 
-from ..errors import ProgramError
+from ..errors import Interrupted, ProgramError
 from .sample import Maker, refusal
 from .text import CampaignError
 
 
 def answer_of(maker: Maker, sample: int) -> dict[str, object]:
-    """Makes a sample; what it took, or why it was refused (`error`)."""
+    """Makes a sample; what it took, why it was refused alone (`refused`), or why all are to end (`error`)."""
     begun, cpu = time.monotonic(), _cpu_s()
     answer: dict[str, object] = {"sample": sample}
     try:
         if not _is_of(maker.folder, maker.campaign.digest):
-            raise CampaignError("the texts were changed while the run went on", "the texts as they were, or another folder", str(maker.campaign.path))
-        maker.make(sample)
-    except (CampaignError, ProgramError, OSError) as problem:
+            answer["error"] = str(CampaignError("the texts were changed while the run went on", "the texts as they were, or another folder", str(maker.campaign.path)))
+        else:
+            maker.make(sample)
+    except (Interrupted, OSError) as problem:
         answer["error"] = refusal(sample, problem)
+    except (CampaignError, ProgramError) as problem:
+        answer["refused"] = refusal(sample, problem)
     return answer | {"seconds": time.monotonic() - begun, "cpu_s": _cpu_s() - cpu, "rss_kb": _rss_kb()}
 
 

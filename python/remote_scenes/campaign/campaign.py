@@ -125,13 +125,17 @@ def read_campaign(path: FileName) -> Campaign:
 
 def _check_products(campaign: Campaign, keys: dict[str, Node]) -> None:
     """CampaignError: a product that this campaign cannot have, or a class of the ground of a material that is not there."""
-    kinds = [s.get("kind") for s in campaign.simulation["sensors"] or () if isinstance(s, dict)]
+    sensors = [s for s in campaign.simulation["sensors"] or () if isinstance(s, dict)]
+    kinds = [s.get("kind") for s in sensors]
+    by_laser = any(s.get("kind") == "lidar" or "preset" in s for s in sensors)
     wrong = (("formats", "kitti", campaign.formats, "frame_camera" in kinds, "a frame camera", "a sensor of kind frame_camera"),
              ("formats", "panoptic", campaign.formats, bool(campaign.groups), "objects", "`objects`"),
              ("keep", "flow", campaign.keep, campaign.frames.count > 1, "a sequence", "`sequence: {frames: 2}` or more"),
-             ("keep", "depth", campaign.keep, bool({"frame_camera", "orthographic"} & {*kinds}), "a sensor of known geometry", "orthographic or frame_camera"))
+             ("keep", "depth", campaign.keep, bool({"frame_camera", "orthographic"} & {*kinds}), "a sensor of known geometry", "orthographic or frame_camera"),
+             ("keep", "polarisation", campaign.keep, any("stokes" in s or "preset" in s for s in sensors), "Stokes vectors", "a sensor with `stokes: linear`"),
+             *(("keep", what, campaign.keep, by_laser, "a laser radar", "a sensor of kind lidar") for what in ("points", "response")))
     for key, name, chosen, there, needed, right in wrong:
-        if name in chosen and not there:
+        if name in chosen and not there and key in keys:
             raise keys[key].error(f"'{name}' needs {needed}", right)
     for material in campaign.stuff:
         if material not in campaign.scene.get("materials", {}):

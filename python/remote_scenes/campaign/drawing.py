@@ -9,6 +9,7 @@ from typing import Any, Callable, Iterator
 
 from ..traced import TracedScene
 from .campaign import Campaign
+from .kinds import kind_of
 from .pairs import place_later
 from .placement import Bounds, Ground, Placed, place_all
 from .shared import Shared, prepare_tree, with_files, write_json
@@ -85,7 +86,7 @@ class Drawer:
             things = folder / "things.h5"
             prepare_tree((placed_scene if beside else whole_scene)(scene, placed), things, self.search)
         simulation = with_files(simulation, campaign.simulation_path.parent)
-        self._complete(simulation)
+        self._complete(simulation, placed)
         if "scenes" not in simulation:
             simulation.pop("scene", None)
             rendered = (backdrop, things) if beside else (things,)
@@ -93,12 +94,15 @@ class Drawer:
         write(simulation, folder / "simulation.yaml")
         return Drawn(draw, scene, simulation, backdrop, things, placed, items)
 
-    def _complete(self, simulation: dict[str, Any]) -> None:
-        """The truth that labels need, and the frames of a sequence."""
+    def _complete(self, simulation: dict[str, Any], placed: list[Placed]) -> None:
+        """The truth that labels need, and the frames of a sequence. Of laser radars objects are tags, and come before those that the text names."""
         if self.campaign.groups:
             more = ("material",) if "panoptic" in self.campaign.formats else ()
             for sensor in simulation["sensors"]:
-                if sensor.get("kind") not in ("point", "goniometer", "rami"):
+                kind = kind_of(sensor)
+                if kind == "lidar":
+                    sensor["tags"] = list(dict.fromkeys([*(p.tag for p in placed), *(sensor.get("tags") or [])]))
+                elif kind not in ("point", "goniometer", "rami"):
                     wanted = [*(sensor.get("truth") or []), *_TRUTH, *(_OF_SUN if simulation.get("sun") else ()), *more]
                     sensor["truth"] = list(dict.fromkeys(wanted))
         simulation["sensors"] = self.campaign.frames.expanded(simulation["sensors"])

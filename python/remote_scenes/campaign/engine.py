@@ -1,6 +1,7 @@
 """Makes all samples of a campaign by worker processes. Whatever is finished stays: a run goes on where the last one ended.
 
-A worker that dies loses the sample it was at, which another one takes up; after three deaths at one sample the run stops.
+A worker that dies loses the sample it was at, which another one takes up; after three deaths the sample counts as refused. A sample that is refused
+is left out, and the others are made; the run stops where ten in a row are refused, or where files cannot be written.
 """
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Callable, Iterable
 
-from ..errors import ProgramError
+from ..errors import Interrupted, ProgramError
 from ..programs import version as program_version
 from .campaign import Campaign, as_json
 from .exports import finished
@@ -28,19 +29,37 @@ from .text import CampaignError, Refused
 from .whole_files import write_whole
 
 DEATHS = 3
+IN_A_ROW = 10
+"""So many samples that are refused one after the other have a fault in common."""
+_FOLDERS = ("samples", "shared", "texts")
+"""What a dataset has before its record: another shard may begin at the same time."""
 Tell = Callable[[str], None]
 
 
 @dataclass
 class Tally:
-    """What a run has done. cpu_s: of all workers and their programs; rss_kb: of a worker after each sample, in the order of their ends."""
+    """What a run has done. cpu_s: of all workers and their programs; rss_kb: of a worker after each sample, in the order of their ends; refused: why, by
+    sample."""
 
     made: int = 0
     there: int = 0
+    refused: dict[int, str] = field(default_factory=dict)
+    in_a_row: int = 0
     deaths: int = 0
     cpu_s: float = 0.0
     seconds: float = 0.0
     rss_kb: list[int] = field(default_factory=list)
+
+    def refuse(self, sample: int, why: str) -> None:
+        """Counts a sample that cannot be made. Refused: too many in a row."""
+        self.refused[sample] = why
+        self.in_a_row += 1
+        if self.in_a_row >= IN_A_ROW:
+            raise Refused(f"{self.first_refusal()} ({IN_A_ROW} samples in a row were refused; the run ends here)")
+
+    def first_refusal(self) -> str:
+        """Of the lowest number."""
+        return self.refused[min(self.refused)]
 
 
 def prepare_folder(campaign: Campaign, folder: Path) -> str:
@@ -56,7 +75,7 @@ def prepare_folder(campaign: Campaign, folder: Path) -> str:
             for key, what in (("campaign", "a campaign with other texts"), ("version", f"version {there.get('version')} of the programs")):
                 if there.get(key) != wanted[key]:
                     raise CampaignError(f"it holds samples of {what}", "give another folder", str(folder))
-        elif not record.exists() and folder.exists() and any(folder.iterdir()):
+        elif not record.exists() and folder.exists() and any(p.name not in _FOLDERS and not p.name.startswith(".") for p in folder.iterdir()):
             raise CampaignError("it holds something else", "give an empty or new folder", str(folder))
         (folder / "samples").mkdir(parents=True, exist_ok=True)
         for source in (campaign.path, campaign.scene_path, campaign.simulation_path):
@@ -95,8 +114,8 @@ def of_shard(samples: int, shard: tuple[int, int]) -> range:
 
 
 def run_samples(campaign: Campaign, folder: Path, numbers: Iterable[int], workers: int, version: str, tell: Tell, executor: Executor | None = None) -> Tally:
-    """Makes samples; workers: processes, 0 = within this one; executor: makes them instead. CampaignError: the first refusal; what is finished
-    stays."""
+    """Makes samples; workers: processes, 0 = within this one; executor: makes them instead. What is refused alone is
+    left out (Tally.refused). CampaignError: what ends the run; what is finished stays."""
     maker, tally = Maker(campaign, folder, version), Tally()
     wanted = []
     for number in numbers:
@@ -110,17 +129,28 @@ def run_samples(campaign: Campaign, folder: Path, numbers: Iterable[int], worker
         for number in wanted:
             try:
                 maker.make(number)
-            except (ProgramError, OSError) as problem:
+            except (Interrupted, OSError) as problem:
                 raise Refused(refusal(number, problem)) from None
-            tally.made += 1
+            except (CampaignError, ProgramError) as problem:
+                tally.refuse(number, refusal(number, problem))
+            else:
+                tally.made += 1
+                tally.in_a_row = 0
     elif wanted:
         _Crew(campaign, folder, version, tell, tally, deque(wanted)).work(min(workers, len(wanted)))
     return tally
 
 
 def _count(answer: dict[str, Any], tally: Tally, wanted: int, who: str, tell: Tell) -> None:
-    """Counts a sample that is made."""
+    """Counts a sample that is made or refused. Refused: an answer that ends the run."""
+    if "error" in answer:
+        raise Refused(str(answer["error"]))
+    if "refused" in answer:
+        tell(f"sample {answer['sample']}: refused")
+        tally.refuse(answer["sample"], str(answer["refused"]))
+        return
     tally.made += 1
+    tally.in_a_row = 0
     tally.cpu_s += answer["cpu_s"]
     tally.seconds += answer["seconds"]
     tally.rss_kb.append(answer["rss_kb"])
@@ -192,25 +222,25 @@ class _Crew:
             self._mourn(worker, selector)
             return
         answer: dict[str, Any] = json.loads(line)
-        if "error" in answer:
-            raise Refused(str(answer["error"]))
         _count(answer, self._tally, self._all, f"worker {worker.pid}", self._tell)
         self._give(worker, selector)
 
     def _mourn(self, worker: subprocess.Popen[str], selector: selectors.BaseSelector) -> None:
-        """A worker has died: its sample goes back to the front, and another worker takes its place."""
+        """A worker has died: its sample goes back to the front unless it has met this too often, and another worker takes its place."""
         sample = self._at[worker]
         self._close(worker)
         _clear(self._folder)
         self._tally.deaths += 1
         assert sample is not None
         self._deaths[sample] = self._deaths.get(sample, 0) + 1
-        if self._deaths[sample] >= DEATHS:
-            raise CampaignError(f"{DEATHS} workers ended without an answer at sample {sample} (the last one with {worker.returncode})",
-                                "memory, or a fault of a program; what is finished stays")
-        self._tell(f"a worker ended with {worker.returncode} at sample {sample}, which is made again")
-        self._waiting.appendleft(sample)
-        self._start(selector)
+        if self._deaths[sample] < DEATHS:
+            self._tell(f"a worker ended with {worker.returncode} at sample {sample}, which is made again")
+            self._waiting.appendleft(sample)
+        else:
+            self._tally.refuse(sample, str(CampaignError(f"{DEATHS} workers ended without an answer at sample {sample} (the last one with {worker.returncode})",
+                                                         "memory, or a fault of a program")))
+        if self._waiting:
+            self._start(selector)
 
 
 __all__ = ["Tally", "of_shard", "prepare_folder", "run_samples"]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Iterable, Iterator
 
 
-PARTS = ("error", "quality", "truth", "tag", "material", "depth", "flow", "panoptic", "change")
+PARTS = ("error", "quality", "truth", "tag", "material", "depth", "flow", "panoptic", "change", "polarisation")
 """What files beside an image add to its name."""
 
 

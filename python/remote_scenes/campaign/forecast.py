@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Sequence
 
-from ..errors import InputError, ProgramError
+from ..errors import InputError, Interrupted, ProgramError
 from ..programs import run_program
 from .campaign import Campaign
-from .drawing import Drawer
+from .drawing import Drawer, Drawn
 from .exports import images
 from .sample import Maker, refusal
 from .shared import UNUSED, with_files, write_json
@@ -20,6 +20,8 @@ from .figures import statistics
 from .text import CampaignError, Refused
 
 PILOTS = 2
+TRIED = 3
+"""Samples of which one is to be taken by the programs before the others are made."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ def forecast(campaign: Campaign, version: str, pilots: int = PILOTS) -> Forecast
         folder = Path(name)
         maker = Maker(campaign, folder, version)
         begun = sum(os.times()[:4])
-        size = sum(p.stat().st_size for n in numbers for p in maker.make(n).iterdir())
+        size = sum(p.stat().st_size for n in numbers for p in _made(maker, n).iterdir())
         seconds = (sum(os.times()[:4]) - begun) / len(numbers)
         found = statistics(folder)
         labels = sum(len(image.labels) for image in images(folder)) / len(numbers)
@@ -54,25 +56,33 @@ def forecast(campaign: Campaign, version: str, pilots: int = PILOTS) -> Forecast
     return Forecast(campaign.samples, len(numbers), seconds * campaign.samples / 3600, size * campaign.samples // len(numbers), labels, errors)
 
 
+def _made(maker: Maker, sample: int) -> Path:
+    """The folder of a sample, or of one of the next ones where it is refused. CampaignError or ProgramError: what is said of it where all are."""
+    said = list[Exception]()
+    for number in range(sample, min(sample + TRIED, maker.campaign.samples)):
+        try:
+            return maker.make(number)
+        except Interrupted:
+            raise
+        except (CampaignError, ProgramError) as problem:
+            said.append(problem)
+    raise said[0]
+
+
 def check_ends(campaign: Campaign, version: str) -> None:
-    """Has the programs check the first sample's texts with every variable at both ends of its range, and what refers to it. CampaignError: a
-    distribution leaves the range of a key, with the line of the distribution and what the program says."""
+    """Has the programs check the texts of the first sample that they take, with every variable at both ends of its range, and what refers to it.
+    CampaignError: a distribution leaves the range of a key, with the line of the distribution and what the program says."""
     with tempfile.TemporaryDirectory(prefix="campaign-") as name:
         folder = Path(name)
         _check_template(campaign)
-        try:
-            drawn = Drawer(campaign, folder, version).draw(0, folder)
-        except ProgramError as problem:
-            raise Refused(refusal(0, problem)) from None
-        if said := _refused("dirsig-render", folder, campaign, "simulation.yaml"):
-            raise CampaignError(f"the first sample is refused: {said}", file=str(campaign.simulation_path))
+        first, drawn = _first_drawn(campaign, folder, version)
         # Parts that do not come from the two texts: the prepared scenes, and truth that labels want.
         parts = {key: drawn.simulation[key] for key in ("scenes",)}
-        scene, simulation = campaign.texts(campaign.draw(0))
+        scene, simulation = campaign.texts(campaign.draw(first))
         for key, rule in campaign.variables.rules.items():
             for value in _ends(rule.ends):
                 try:
-                    texts = campaign.texts(campaign.draw(0, {key: value}))
+                    texts = campaign.texts(campaign.draw(first, {key: value}))
                 except CampaignError:
                     continue  # another variable has no range then, which its own sample would say
                 for text, before, tree, program in (("scene", scene, texts[0], "scene-prep"), ("simulation", simulation, texts[1], "dirsig-render")):
@@ -82,6 +92,25 @@ def check_ends(campaign: Campaign, version: str) -> None:
                     write_json(whole, folder / "checked.yaml")
                     if said := _refused(program, folder, campaign):
                         raise rule.node.error(f"'{key}' of {value!r}, which this distribution reaches, is refused: {said}", "a narrower distribution")
+
+
+def _first_drawn(campaign: Campaign, folder: Path, version: str) -> tuple[int, Drawn]:
+    """The first of the first samples that can be drawn and that the renderer takes: one may be refused alone. CampaignError: what is said of sample 0
+    where all are."""
+    drawer, said = Drawer(campaign, folder, version), list[CampaignError]()
+    for sample in range(min(TRIED, campaign.samples)):
+        try:
+            drawn = drawer.draw(sample, folder)
+            if not (refused := _refused("dirsig-render", folder, campaign, "simulation.yaml")):
+                return sample, drawn
+            said.append(CampaignError(f"the first sample is refused: {refused}", file=str(campaign.simulation_path)))
+        except CampaignError as problem:
+            said.append(problem)
+        except Interrupted:
+            raise
+        except ProgramError as problem:
+            said.append(Refused(refusal(sample, problem)))
+    raise said[0]
 
 
 def _check_template(campaign: Campaign) -> None:

@@ -99,7 +99,7 @@ def _measured(dataset: xr.Dataset, mask: npt.NDArray[np.bool_]) -> dict[str, Any
     values, errors = (dataset[name].values[:, mask].astype(np.float64) for name in (quantity, "standard_error"))
     mean, error = values.mean(axis=1), np.sqrt((errors ** 2).sum(axis=1)) / mask.sum()
     with np.errstate(divide="ignore", invalid="ignore"):
-        snr = np.median(values / errors, axis=1)
+        snr = np.median(np.abs(values) / errors, axis=1)  # Stokes vectors have signs
     bands = [str(b) for b in dataset["band"].values]
     out: dict[str, Any] = {"spectrum": dict(zip(bands, mean.tolist())), "spectrum_error": dict(zip(bands, error.tolist())),
                            "snr": dict(zip(bands, snr.tolist()))}

@@ -10,7 +10,7 @@ from typing import Any, Callable, Iterable, Mapping
 from .answers import answer_of
 from .campaign import Campaign, read_campaign
 from .sample import Maker
-from .text import CampaignError, Refused
+from .text import CampaignError
 
 RANKS = (("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), ("PMI_RANK", "PMI_SIZE"), ("SLURM_PROCID", "SLURM_NTASKS"))
 """Rank from 0 and number of ranks, as Open MPI, MPICH (and what follows its process manager) and Slurm's srun state them."""
@@ -40,7 +40,7 @@ def leave_launcher() -> None:
 
 def run_by(executor: Executor, campaign: Campaign, folder: Path, numbers: Iterable[int], version: str,
            done: Callable[[dict[str, Any]], None]) -> None:
-    """Has an executor make samples, in processes that see the same files; done: gets the answer of each. CampaignError: the first refusal, or an
+    """Has an executor make samples, in processes that see the same files; done: gets the answer of each. CampaignError: what `done` raises, or an
     executor that has lost its workers; what is finished stays."""
     arguments = (os.path.abspath(campaign.path), os.path.abspath(folder), version)
     numbers = iter(numbers)
@@ -55,10 +55,7 @@ def run_by(executor: Executor, campaign: Campaign, folder: Path, numbers: Iterab
                 return
             ended, waiting = wait(waiting, return_when=FIRST_COMPLETED)
             for future in ended:
-                answer = future.result()
-                if "error" in answer:
-                    raise Refused(str(answer["error"]))
-                done(answer)
+                done(future.result())
     except RuntimeError as broken:  # BrokenExecutor, and what Dask says of workers that are gone
         raise CampaignError(f"the executor has ended: {str(broken).splitlines()[0]}", "what is finished stays; the same call goes on") from None
     finally:

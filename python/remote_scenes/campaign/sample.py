@@ -21,6 +21,7 @@ from .campaign import Campaign, as_json
 from .drawing import Drawer, Drawn
 from .earth import Frame
 from .flow import depth, flow, middles, write_flo, write_pfm
+from .kinds import keep_lidar_files
 from .labels import Sight, degrees, label_image, rounded
 from .pairs import LATER, changes, write_change
 from .panoptic import write_segments
@@ -28,7 +29,7 @@ from .rendered import rendered
 from .text import CampaignError
 
 _KEPT = {"image": ("",), "error": ("_error",), "quality": ("_quality",), "truth": ("_truth",), "classes": ("_tag", "_material"),
-         "depth": (), "flow": ()}
+         "depth": (), "flow": (), "polarisation": ("_polarisation",), "points": (), "response": ()}
 
 
 class Maker:
@@ -67,12 +68,14 @@ class Maker:
         work = new / "work"
         drawn = self.drawer.draw(sample, work)
         images, messages, datasets = self._pictures(drawn, work, new, "")
+        lidars = self._lidars(drawn, work, new, "")
         record = {"campaign": self.campaign.digest, "version": self.version, "seed": self.campaign.seed, "sample": sample,
                   "values": drawn.draw.known, "objects": [asdict(p) for p in drawn.placed]}
         if self.campaign.pair:
             (work / "later").mkdir()
             later = self.drawer.draw_later(drawn, work / "later")
             more, said, others = self._pictures(later, work / "later", new, LATER)
+            lidars += self._lidars(later, work / "later", new, LATER)
             change = changes(drawn.placed, later.placed)
             for image in [*images, *more]:
                 image["labels"] = [{**label, "change": change[f"{label['class']}.{label['object']}"]} for label in image["labels"]]
@@ -81,7 +84,12 @@ class Maker:
                     write_change(datasets[name], others[name], change, new / f"{name}_change.png")
             images, messages = [*images, *more], sorted({*messages, *said})
             record |= {"values_later": later.draw.known, "objects_later": [asdict(p) for p in later.placed]}
+        record |= {"lidars": lidars} if lidars else {}
         (new / "sample.json").write_text(as_json({**record, "images": images, "messages": messages}), encoding="utf-8")
+
+    def _lidars(self, drawn: Drawn, work: Path, new: Path, ending: str) -> list[dict[str, Any]]:
+        """Records of the laser radars, whose files are put into `new`."""
+        return keep_lidar_files(drawn.simulation["sensors"], [p.tag for p in drawn.placed], work / "out", new, ending, self.campaign.keep)
 
     def _pictures(self, drawn: Drawn, work: Path, new: Path, ending: str) -> tuple[list[dict[str, Any]], list[str], dict[str, xr.Dataset]]:
         """Renders, and puts what is kept of it into `new`; returns the images' records, the messages, and the images. ending: of the images' names."""
@@ -178,7 +186,7 @@ def _about(name: str, dataset: xr.Dataset) -> dict[str, Any]:
         about["wavelength_um"] = dataset["wavelength_um"].values.tolist()
     if "acquisition_time" in dataset.attrs:
         about["time"] = dataset.attrs["acquisition_time"]
-    relative = errors / np.where(values > 0, values, np.nan)
+    relative = errors / np.where(values != 0, np.abs(values), np.nan)
     about["median_relative_error"] = dict(zip(bands, (_median(r) for r in relative)))
     about["flagged"] = float((dataset["quality"].values != 0).mean())
     return about

@@ -7,8 +7,9 @@ from typing import Literal
 from .text import Node
 
 FORMATS = ("coco", "panoptic", "dota", "yolo", "yolo_obb", "kitti", "geojson", "webdataset", "zarr", "cog", "stac", "croissant")
-KEPT = ("image", "error", "quality", "truth", "classes", "depth", "flow")
-"""The radiance, its standard error, flags, all truth, classes by tag and material, and by rays the depth and the flow to the next frame."""
+KEPT = ("image", "error", "quality", "truth", "classes", "depth", "flow", "polarisation", "points", "response")
+"""The radiance, its standard error, flags, all truth, classes by tag and material, by rays the depth and the flow to the next frame, degree and angle
+of polarisation, and of laser radars what detectors make, and photons by their arrival."""
 
 
 @dataclass(frozen=True)
@@ -74,4 +75,4 @@ def read_formats(node: Node | None) -> tuple[str, ...]:
 
 def read_keep(node: Node | None) -> tuple[str, ...]:
     """A list of names of KEPT."""
-    return ("image", "error", "quality") if node is None else tuple(dict.fromkeys(n.one_of(KEPT) for n in node.list(1)))
+    return ("image", "error", "quality", "points") if node is None else tuple(dict.fromkeys(n.one_of(KEPT) for n in node.list(1)))

@@ -26,6 +26,7 @@ def slurm_script(campaign: Campaign, folder: Path, shards: int, workers: int) ->
     name = "".join(c if c.isalnum() else "_" for c in campaign.name)
     quoted = {"python": shlex.quote(sys.executable), "campaign": shlex.quote(os.path.abspath(campaign.path)), "folder": shlex.quote(os.path.abspath(folder))}
     finish = f"{quoted['python']} -m remote_scenes.campaign {quoted['campaign']} -o {quoted['folder']}"
-    # Slurm reads its own lines without a shell: blanks are escaped there.
-    log = os.path.join(os.path.abspath(folder), "slurm-%A_%a.log").replace("\\", "\\\\").replace(" ", "\\ ")
+    # Beside the dataset, whose folder Slurm would want to be there. It reads its own lines without a shell, and writes other things for % and a letter.
+    beside = os.path.abspath(folder).replace("\\", "\\\\").replace('"', '\\"').replace("%", "%%")
+    log = f'"{beside}-slurm-%A_%a.log"'
     return _SCRIPT.format(name=name, shards=shards, workers=workers, log=log, finish=finish, **quoted)

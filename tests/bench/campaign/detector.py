@@ -2,10 +2,10 @@
 """detector.py FOLDER [--chips 500] [--first N] [--test 100] [--workers 1] [--svg FILE]
 Makes chips of vehicles on a parking lot and a street in four visible and near-infrared bands and a thermal one (the scene of sample_scenes/campaigns with
 temperatures), trains a small detector on 50 to 400 of them, and prints its average precision on chips of another seed, and on chips whose materials have
-other spectra. The same command goes on where it was ended.
+other spectra. The kind of detector is chosen on chips of a third seed, before the others are looked at. The same command goes on where it was ended.
 
 The detector: histograms of gradients in 4 x 4 cells (N. Dalal and B. Triggs, CVPR 2005) with means of the bands in them about every second pixel, ridge
-regression on random rectified features of them, and maxima of its score. A detection is right when it lies in the oriented box of a vehicle that has none yet; vehicles
+regression on them or on random rectified features of them (KINDS), and maxima of its score. A detection is right when it lies in the oriented box of a vehicle that has none yet; vehicles
 of which less than half is seen count neither way. Needs numpy, xarray, PyYAML, the package on PYTHONPATH and the programs (REMOTE_SCENES_BIN)."""
 import argparse
 import json
@@ -21,7 +21,12 @@ from remote_scenes.campaign.engine import prepare_folder, run_samples
 from remote_scenes.envi import read_values
 
 SIZES, REPEATS = (50, 100, 200, 400), 3
-STEP, CELL, BINS, HIDDEN, RIDGE = 2, 4, 8, 400, 1e-3
+STEP, CELL, BINS = 2, 4, 8
+# Random features (0: none, linear) and ridge.
+KINDS = tuple((hidden, ridge) for hidden in (0, 200, 400, 800) for ridge in (1e-3, 1e-2))
+# Seed, other spectra.
+SETS = {"validation": (4, False), "held out": (2, False), "other spectra": (3, True)}
+TESTS = ("held out", "other spectra")
 TEMPERATURE_K = {"asphalt": 316, "lines": 309, "grass": 301, "leaves": 299, "paint": 312, "white": 306, "silver": 310, "black": 322, "red": 315, "blue": 316, "glass": 308, "tyre": 318}
 # W/(m2 sr um), even: blue by day, about 240 K in the window. The sun shines without air.
 SKY = {"radiance": {"wavelength_um": [0.3, 0.45, 0.55, 0.65, 0.85, 1.05, 4, 8, 10.5, 13], "value": [70, 75, 50, 35, 15, 8, 0.05, 4, 2.5, 5]}}
@@ -118,21 +123,22 @@ def targets(labels, places):
 
 
 class Detector:
-    """Ridge regression on random rectified features (A. Rahimi and B. Recht 2008), in which both classes weigh the same."""
+    """Ridge regression, on random rectified features (A. Rahimi and B. Recht 2008) where hidden is not 0, in which both classes weigh the same."""
 
-    def __init__(self, parts, wanted):
+    def __init__(self, parts, wanted, hidden, ridge):
         dice = np.random.default_rng(7)
         # All places of vehicles, and one in sixteen of the others.
         kept = [(y > 0) | ((y < 0) & (dice.random(len(y)) < 1 / 16)) for y in wanted]
         x, y = np.concatenate([p[k] for p, k in zip(parts, kept)]), np.concatenate([w[k] for w, k in zip(wanted, kept)])
         self.mean, self.spread = x.mean(axis=0), x.std(axis=0) + 1e-6
-        self.turn = dice.normal(size=(x.shape[1] + 1, HIDDEN)).astype(np.float32) / np.sqrt(x.shape[1])
+        self.turn = dice.normal(size=(x.shape[1] + 1, hidden)).astype(np.float32) / np.sqrt(x.shape[1]) if hidden else None
         weight = np.where(y > 0, 0.5 / (y > 0).sum(), 0.5 / (y < 0).sum())[:, None].astype(np.float32)
         h = self._hidden(x)
-        self.model = np.linalg.solve((h.T @ (weight * h)).astype(float) + RIDGE * np.eye(HIDDEN), h.T @ (weight[:, 0] * y))
+        self.model = np.linalg.solve((h.T @ (weight * h)).astype(float) + ridge * np.eye(h.shape[1]), h.T @ (weight[:, 0] * y))
 
     def _hidden(self, x):
-        return np.maximum(np.concatenate([(x - self.mean) / self.spread, np.ones((len(x), 1), np.float32)], axis=1) @ self.turn, 0)
+        x = np.concatenate([(x - self.mean) / self.spread, np.ones((len(x), 1), np.float32)], axis=1).astype(np.float32)
+        return x if self.turn is None else np.maximum(x @ self.turn, 0)
 
     def score(self, x):
         return self._hidden(x) @ self.model
@@ -174,29 +180,45 @@ def curve(rows, path):
                     '<text x="60" y="18">average precision</text>' + "".join(parts) + "</svg>\n")
 
 
+def trained(chosen, kind):
+    return Detector([x for x, _, _ in chosen], [targets(labels, places) for _, places, labels in chosen], *kind)
+
+
+def chosen_kind(train, validation, sizes):
+    """The kind with the best mean of average precision over the sizes, on the validation chips; prints all."""
+    order, found = np.random.default_rng(2).permutation(len(train)), {}
+    print("random features, ridge: average precision on the validation chips, by size")
+    for kind in KINDS:
+        found[kind] = [average_precision(trained([train[i] for i in order[:size]], kind), validation) for size in sizes]
+        print(f"{kind[0]:4d}, {kind[1]:g}: " + "  ".join(f"{v:.3f}" for v in found[kind]) + f"  mean {np.mean(found[kind]):.3f}", flush=True)
+    best = max(found, key=lambda kind: np.mean(found[kind]))
+    print(f"chosen: {best[0]} random features, ridge {best[1]:g}")
+    return best
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--chips", type=int, default=500)
     parser.add_argument("--first", type=int, help="the first so many of them alone")
-    parser.add_argument("--test", type=int, default=100)
+    parser.add_argument("--test", type=int, default=60, help="chips of the validation, and of each test")
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--svg", type=Path, help="the curve as a picture")
     options = parser.parse_args()
     sets = {}
     first = options.first or options.chips
-    for name, count, some, seed, other in (("held out", options.test, options.test, 2, False), ("other spectra", options.test, options.test, 3, True),
-                                           ("train", options.chips, first, 1, False)):
+    for name, count, some, seed, other in (*((name, options.test, options.test, *how) for name, how in SETS.items()), ("train", options.chips, first, 1, False)):
         images, labels = chips(options.folder / name.replace(" ", "_"), count, some, seed, other, options.workers)
         sets[name] = [(*features(image), label) for image, label in zip(images, labels)]
+    sizes = [s for s in SIZES if s <= first]
+    kind = chosen_kind(sets["train"], sets["validation"], sizes)
     dice, rows = np.random.default_rng(1), []
     print("chips   held out         other spectra    (average precision, standard deviation of the choice of chips)")
-    for size in (s for s in SIZES if s <= first):
+    for size in sizes:
         scores = []
         for _ in range(REPEATS):
-            chosen = [sets["train"][i] for i in dice.permutation(first)[:size]]
-            model = Detector([x for x, _, _ in chosen], [targets(labels, places) for _, places, labels in chosen])
-            scores.append([average_precision(model, sets[name]) for name in ("held out", "other spectra")])
+            model = trained([sets["train"][i] for i in dice.permutation(first)[:size]], kind)
+            scores.append([average_precision(model, sets[name]) for name in TESTS])
         mean, spread = np.mean(scores, axis=0), np.std(scores, axis=0, ddof=1)
         print(f"{size:5d}   " + "   ".join(f"{m:.3f} +- {s:.3f}" for m, s in zip(mean, spread)), flush=True)
         rows.append((size, mean, spread))

@@ -21,6 +21,11 @@ N = 10_000
 CELLS = 25
 
 
+def uneven(count, cells):
+    """What a control expects: the first cell of even ones 30 % more often."""
+    return [count * (1.3 if i == 0 else 1) / (cells + 0.3) for i in range(cells)]
+
+
 class Distributions(Case):
     def drawn(self, text, name="x", count=N, seed=5):
         (self.folder / "v.yaml").write_text(text)
@@ -78,10 +83,12 @@ class Distributions(Case):
         whole = Counter(self.drawn("x: {integers: [-2, 4]}"))
         self.assertEqual(sorted(whole), list(range(-2, 5)))
         self.assertLess(chi_square(whole.values(), [N / 7] * 7), chi_square_bound(7))
+        self.assertGreater(chi_square(whole.values(), uneven(N, 7)), chi_square_bound(7))
         dates = self.drawn("x: {uniform: [2026-06-21T06:00:00Z, 2026-06-21T11:59:59Z]}")
         hours = Counter(d[11:13] for d in dates)
         self.assertEqual(sorted(hours), ["06", "07", "08", "09", "10", "11"])
         self.assertLess(chi_square(hours.values(), [N / 6] * 6), chi_square_bound(6))
+        self.assertGreater(chi_square(hours.values(), uneven(N, 6)), chi_square_bound(6))
 
     def test_grid_and_zip(self):
         text = "a: {grid: [1, 2, 3]}\nb: {zip: [u, v]}\nc: {zip: [U, V]}\nall: [$a, $b, $c]"
@@ -101,6 +108,9 @@ class Distributions(Case):
             mine = [x - low for k, x in values if k == case]
             self.assertLess(chi_square([len(mine), N - len(mine)], [N * share, N * (1 - share)]), chi_square_bound(2))
             self.assertLess(self.held(mine, lambda v: v), chi_square_bound(CELLS))
+            # The control: as if both cases came as often, and large values more often.
+            self.assertGreater(chi_square([len(mine), N - len(mine)], [N / 2] * 2), chi_square_bound(2))
+            self.assertGreater(self.held(mine, lambda v: v ** 1.3), chi_square_bound(CELLS))
 
     def test_mixtures_of_spectra(self):
         """Shares of a Dirichlet distribution: each has a beta distribution, of which these have closed forms."""
@@ -166,6 +176,7 @@ class Places(unittest.TestCase):
         self.assertEqual(sorted(cells), [(0, 0), (0, 1), (1, 0)])
         there = sum(cells.values())
         self.assertLess(chi_square(cells.values(), [there / 3] * 3), chi_square_bound(3))
+        self.assertGreater(chi_square(cells.values(), uneven(there, 3)), chi_square_bound(3))
         self.assertTrue(shape.holds_all([(0.1, 0.1), (0.9, 0.1), (0.9, 0.9), (0.1, 0.9)]))
         # All corners are inside, the notch is not.
         self.assertFalse(shape.holds_all([(1.9, 0.9), (0.9, 1.9), (0.1, 1.1), (1.1, 0.1)]))
@@ -176,6 +187,7 @@ class Places(unittest.TestCase):
         cells = Counter(round(h) for _, _, h in found)
         # North and south three times as often as east and west.
         self.assertLess(chi_square([cells[k] for k in (0, 180, 90, 270)], [N * s / 8 for s in (3, 3, 1, 1)]), chi_square_bound(4))
+        self.assertGreater(chi_square([cells[k] for k in (0, 180, 90, 270)], [N / 4] * 4), chi_square_bound(4))
         for x, y, heading in found[:200]:
             side = {0: x, 180: -x, 90: 50 - y, 270: y - 50}[round(heading)]
             self.assertAlmostEqual(side, 1.5)  # on the right of the way that is headed

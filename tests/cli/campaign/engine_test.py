@@ -1,9 +1,12 @@
 """The engine: the same bytes with any number of workers, after kill -9 and by shards; refusals that leave nothing half-written; and what is written
 when all samples are there, read by decoders of the tests' own."""
+import contextlib
 import gzip
+import io
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,12 +15,14 @@ import time
 import unittest
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
-from kit import CAMPAIGN, SCENE, SIMULATION, Case, hashes
+from kit import CAMPAIGN, SCENE, SIMULATION, SOME_REFUSED, Case, hashes
 from remote_scenes.campaign import CampaignError, forecast, read_campaign, run
-from remote_scenes.campaign.engine import prepare_folder, run_samples
+from remote_scenes.campaign.__main__ import main
+from remote_scenes.campaign.engine import IN_A_ROW, Tally, prepare_folder, run_samples
 from remote_scenes.campaign.exports import images
 from remote_scenes.campaign.label_files import write_coco
 from remote_scenes.campaign.launch import RANKS, shard_of_rank
@@ -259,10 +264,36 @@ class Refusals(Case):
         self.refused(r"simulation.yaml: error: the first sample is refused: .*paths", simulation=SIMULATION.replace("paths: 4", "paths: -4"))
 
     def test_a_sample_that_is_refused_once_its_objects_are_drawn(self):
-        path = self.write(CAMPAIGN.replace("place: car, ", "place: car, scale: {choice: [$s]}, ").replace("vary:\n", "vary:\n  s: -1\n"))
+        path = self.write(CAMPAIGN.replace("samples: 5", "samples: 1").replace("place: car, ", "place: car, scale: {choice: [$s]}, ").replace("vary:\n", "vary:\n  s: -1\n"))
         with self.assertRaisesRegex(CampaignError, "campaign.yaml:13:\\d+: error: sample 0: the scale -1 is out of range"):
             run(path, self.folder / "out", workers=0)
         self.assertEqual([p for p in self.folder.glob("out/samples/*")], [])
+
+    def test_one_sample_of_many_is_refused(self):
+        """The first and the last: the others are made and in the lists, one message names them, and the command ends with 1. By a worker: combined_test.py."""
+        path, folder, said = self.write(SOME_REFUSED), self.folder / "out", io.StringIO()
+        with contextlib.redirect_stderr(said):
+            self.assertEqual(main([str(path), "-o", str(folder), "--workers", "0", "-q"]), 1)
+        self.assertRegex(said.getvalue(), r"^\S*campaign.yaml:\d+:\d+: error: sample 0: .*\(2 of 3 samples were refused: 0, 2; the others are there\)\n$")
+        self.assertEqual([p.name for p in (folder / "samples").iterdir()], ["000001"])
+        self.assertEqual([i["file_name"][8:14] for i in json.loads((folder / "annotations.json").read_text())["images"]], ["000001"])
+
+    def test_workers_that_end_without_an_answer(self):
+        """After three of them a sample counts as refused, and the others have their turn."""
+        campaign = read_campaign(self.write())
+        prepare_folder(campaign, self.folder / "out")
+        with mock.patch.object(sys, "executable", shutil.which("false")):
+            tally = run_samples(campaign, self.folder / "out", range(2), 2, "v", lambda _: None)
+        self.assertEqual((tally.made, tally.deaths, sorted(tally.refused)), (0, 6, [0, 1]))
+        self.assertIn("3 workers ended without an answer at sample 1 (the last one with 1); memory", tally.refused[1])
+
+    def test_many_refusals_end_the_run(self):
+        """Ten in a row: what they have in common is not looked for in all others. One that is made begins the count anew."""
+        tally = Tally()
+        for sample in range(IN_A_ROW - 1):
+            tally.refuse(sample, f"error: sample {sample}")
+        with self.assertRaisesRegex(CampaignError, "error: sample 0 .10 samples in a row"):
+            tally.refuse(20, "error: sample 20")
 
     def test_texts_that_change_under_way(self):
         """A worker that begins after the change makes no sample of it."""
@@ -283,6 +314,11 @@ class Refusals(Case):
         (self.folder / "other/mine").write_text("")
         with self.assertRaisesRegex(CampaignError, "holds something else"):
             run(path, self.folder / "other", workers=0)
+        # Another shard has begun a moment ago, and has written no record yet.
+        (self.folder / "begun/samples").mkdir(parents=True)
+        (self.folder / "begun/.campaign.json.host.1").write_text("")
+        prepare_folder(read_campaign(path), self.folder / "begun")
+        self.assertTrue((self.folder / "begun/campaign.json").is_file())
         (self.folder / "made/samples/000000").mkdir(parents=True)
         (self.folder / "made/campaign.json").write_text('{"campaign": "x"}')
         with self.assertRaisesRegex(CampaignError, "a campaign with other texts; give another folder"):
@@ -323,6 +359,8 @@ class Refusals(Case):
                 for i in (1, 2, 3)]
         self.assertEqual([s.partition("--shard ")[2].split()[0] for s in said], ["1/3", "2/3", "3/3"])
         self.assertTrue(all(f"-o {self.folder}/a b --shard" in s for s in said))
+        # What Slurm writes is not in the dataset, which would hold something else then.
+        self.assertIn(f'#SBATCH --output="{self.folder}/a b-slurm-%A_%a.log"\n', text)
 
 
 if __name__ == "__main__":

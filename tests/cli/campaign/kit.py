@@ -56,6 +56,11 @@ objects:
     spacing_m: 0.5
 """
 
+# Two slots: samples 0 and 2 have three and four cars.
+SOME_REFUSED = (CAMPAIGN.replace("samples: 5", "samples: 3\nformats: [coco]").replace("{uniform: [20, 60]}", "30").replace("{choice: [0.08, 0.12]}", "0.1")
+                .replace("{polygons: [[[-12, -12], [12, -12], [12, 12], [-12, 12]]]}", "{rows: [{from: [-9, 0], to: [9, 0], count: 2, heading_deg: 0}]}")
+                .replace("vary:\n", "vary:\n  n: {grid: [3, 1, 4]}\n").replace("{integers: [3, 5]}", "$n"))
+
 
 class Case(unittest.TestCase):
     """A test with a folder of its own, which holds a small campaign."""

@@ -1,15 +1,19 @@
-"""Programs of others. Launchers and executors: the ranks that mpirun starts, the tasks of an array as a stand-in for Slurm's sbatch starts them, and Dask's workers make the
-same bytes as one process. Readers: rasterio on GeoTIFF and COG, with the labels of the map upon them; zarr, pystac, mlcroissant and pycocotools without an
+"""Programs of others. Launchers and executors: the ranks that mpirun starts, the tasks of an array of Slurm, which the test starts, and of a stand-in for
+its sbatch, and Dask's workers make the same bytes as one process. Readers: rasterio on GeoTIFF and COG, with the labels of the map upon them; zarr, pystac, mlcroissant and pycocotools without an
 error. What is not installed is skipped."""
 import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import unittest
+from pathlib import Path
 
 import numpy as np
+import slurm_kit
 from kit import CAMPAIGN, SIMULATION, Case, hashes
 from remote_scenes.campaign import run
 
@@ -44,6 +48,48 @@ class Launch(Case):
         for task in [*range(first, last + 1), last]:
             subprocess.run(["sh", self.folder / "job"], env={**os.environ, "SLURM_ARRAY_TASK_ID": str(task)}, check=True, capture_output=True)
         self.same(self.folder / "array")
+
+    @unittest.skipIf(slurm_kit.missing(), f"needs Slurm: no {slurm_kit.missing()}")
+    def test_an_array_of_slurm(self):
+        """Slurm itself: of an array of two tasks one is requeued while it works, the other one is killed with SIGKILL and requeued after its end."""
+        folder = self.folder / "by slurm"
+        text = subprocess.run([*COMMAND, self.path, "-o", folder, "--slurm", "2", "--workers", "1"], capture_output=True, text=True, check=True).stdout
+        (self.folder / "job").write_text(text)
+        with slurm_kit.Slurm() as slurm:
+            job = slurm.call("sbatch", "--parsable", "--time=60", self.folder / "job").strip()
+            self.until(lambda: self.made(folder, 1) >= 1)
+            slurm.call("scontrol", "requeue", f"{job}_1")
+            os.kill(self.until(lambda: self.task_at_work(folder, 2)), signal.SIGKILL)
+            self.until(lambda: slurm.states(job)[2][0] in ("FAILED", "NODE_FAIL", "COMPLETED"))
+            slurm.call("scontrol", "requeue", f"{job}_2")
+            self.until(lambda: {state for state, _ in slurm.states(job).values()} == {"COMPLETED"})
+            self.assertEqual(slurm.states(job), {1: ("COMPLETED", 1), 2: ("COMPLETED", 1)})
+            self.assertIn("samples made", (self.folder / f"by slurm-slurm-{job}_2.log").read_text())
+            print(f"Slurm {slurm.version()}", file=sys.stderr)
+        subprocess.run([*COMMAND, self.path, "-o", folder, "-q"], check=True, capture_output=True)
+        self.same(folder)
+
+    def until(self, reached, seconds=300):
+        end = time.monotonic() + seconds
+        while not (found := reached()):
+            self.assertLess(time.monotonic(), end, "too late")
+            time.sleep(0.02)
+        return found
+
+    def made(self, folder, task):
+        """Samples of one of two tasks that are there."""
+        return sum(p.name.isdecimal() and int(p.name) % 2 == task - 1 for p in folder.glob("samples/*"))
+
+    def task_at_work(self, folder, task):
+        """The process of one of two tasks, once its worker makes a sample: what is unfinished has the worker's number in its name."""
+        for path in folder.glob("samples/.0*"):
+            _, sample, *_, worker = path.name.split(".")
+            if int(sample) % 2 == task - 1:
+                try:
+                    return int(Path(f"/proc/{worker}/stat").read_text().rpartition(")")[2].split()[1])
+                except OSError:
+                    pass  # it has just ended
+        return None
 
     def test_dask(self):
         try:

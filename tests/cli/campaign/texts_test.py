@@ -70,6 +70,8 @@ WRONG = [
     ("spacing_m: 0.5", "spacing_m: -1", 18, "-1 is out of range", True),
     ("spacing_m: 0.5", "spacing_m: [", 19, "expected", False),
     ("samples: 5", "samples: 5\nformats: [coca]", 4, "did you mean 'coco'", True),
+    ("samples: 5", "samples: 5\nkeep: [image, polarisation]", 4, "'polarisation' needs Stokes vectors; a sensor with", False),
+    ("samples: 5", "samples: 5\nkeep: [points]", 4, "'points' needs a laser radar; a sensor of kind lidar", False),
     ("samples: 5", "samples: 5\npicture: {range: [3, 1]}", 4, "the lower number first", False),
 ]
 
