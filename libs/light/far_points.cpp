@@ -19,7 +19,8 @@ Dir FarPoints::direction_at(const FarPoint& point, const PointLook& look) const 
   constexpr double kEarthRate = 7.292115e-5;  // rad/s
   const double angle = -kEarthRate * (look.time - seconds), c = std::cos(angle), s = std::sin(angle);
   const Dir d = point.direction;
-  return normalized(d * c + cross(pole, d) * s + pole * (dot(pole, d) * (1 - c)));
+  const Dir bare = normalized(d * c + cross(pole, d) * s + pole * (dot(pole, d) * (1 - c)));
+  return air ? air->seen(bare, look.from) : bare;
 }
 
 double FarPoints::scintillation_of(size_t point, const Watched& how) const {

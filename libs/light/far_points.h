@@ -8,6 +8,7 @@
 
 #include "light/night/satellites.h"
 #include "math/vec.h"
+#include "motion/star_refraction.h"
 #include "spectral/curve.h"
 #include "spectral/state.h"
 
@@ -21,7 +22,7 @@ struct FarPoint {
   std::shared_ptr<const Curve> shape = {};         // over that at 0.55 um; null = a blackbody's of `kelvin`
   bool twinkles = true;                            // it has no disk
   std::shared_ptr<const SunlitPoint> moving = {};  // a satellite, whose light is its share of the Sun's
-  Dir direction;  // towards it at the moment of FarPoints, scene ENU, lifted by the air of the place
+  Dir direction;  // towards it at the moment of FarPoints, scene ENU, without refraction
 };
 
 // Where and when a point is looked for: m, scene ENU; s.
@@ -32,10 +33,11 @@ struct PointLook {
 
 struct FarPoints {
   std::vector<FarPoint> points;
-  Dir pole;                                    // they turn about it with the Earth, scene ENU
-  double seconds = 0;                          // simulation time of the directions
-  std::optional<uint64_t> scintillation = {};  // seed; nothing: they do not twinkle
-  double height = 0;                           // m above sea level, of the scene's origin
+  Dir pole;                                        // they turn about it with the Earth, scene ENU
+  double seconds = 0;                              // simulation time of the directions
+  std::optional<uint64_t> scintillation = {};      // seed; nothing: they do not twinkle
+  double height = 0;                               // m above sea level, of the scene's origin
+  std::shared_ptr<const StarRefraction> air = {};  // that lifts them; null: there is none
 
   // The factor by which a point differs from its mean in an exposure of a sensor; 1 where nothing twinkles, or the
   // sensor's aperture (m) is not known (0).
@@ -46,7 +48,7 @@ struct FarPoints {
   };
   double scintillation_of(size_t point, const Watched& how) const;
 
-  // Towards a point. Refraction is that of the moment; satellites have none.
+  // Towards a point as it is seen, through the air above or, from orbit, along the limb; satellites are not lifted.
   Dir direction_at(const FarPoint& point, const PointLook& look) const;
   // Above the air, W/(m2 um), the mean of each bin.
   std::vector<double> irradiance(const FarPoint& point, const SpectralState& state, const PointLook& look = {}) const;

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "base/interrupt.h"
 #include "light/far_points.h"
+#include "light/night/stars.h"
 #include "scheduler/point_sight.h"
 #include "sensor/point_images.h"
+#include "transport/channels.h"
+#include "transport/flat_mirrors.h"
 
 namespace suite {
 
@@ -163,6 +167,73 @@ void add_points(const Primed& primed, Sensor& sensor, const Capture& capture, Ca
   for (size_t i = 0; i < lights.size(); ++i)
     if (const FarPoints* points = lights[i]->points()) any = true, view.add(*points, static_cast<uint16_t>(i), seen);
   if (any) sees->take_points(capture, std::move(seen));
+}
+
+namespace {
+
+// Materials of smooth surfaces that have no images of far points. none: whether no surface has.
+std::set<std::string> without_images(const Tracer& tracer, const Optics& optics, bool none) {
+  const Scene& scene = tracer.scene();
+  const FlatMirrors flat(tracer, optics);
+  std::set<std::string> names;
+  const auto smooth = [&](uint32_t material) {
+    const ScatterModel* const model = material == kNone ? nullptr : optics.material(material).model;
+    return model && model->has_delta();
+  };
+  const auto of = [&](const TracedObject& o) {
+    std::vector<uint32_t> all;
+    if (o.material_override != kNone)
+      all.push_back(o.material_override);
+    else if (o.primitive != kNone)
+      all.push_back(scene.primitives[o.primitive].material);
+    else
+      for (const Part& part : scene.meshes[o.mesh].parts) all.push_back(part.material);
+    std::erase_if(all, [&](uint32_t material) { return !smooth(material); });
+    return all;
+  };
+  const auto is_smooth = [&](const TracedObject& o) { return !of(o).empty(); };
+  tracer.each("smooth surfaces", is_smooth, [&](uint32_t number, const TracedObject& object) {
+    Hit hit;
+    hit.object = number;
+    if (none || !flat.has(hit))
+      for (const uint32_t material : of(object)) names.insert("'" + scene.materials[material].id + "'");
+  });
+  return names;
+}
+
+}  // namespace
+
+std::optional<Diagnostic> diagnose_points(const Tracer& tracer, const Environment& environment, const Optics& optics,
+                                          const Sensor& sensor) {
+  if (!dynamic_cast<const SeesPoints*>(&sensor)) return std::nullopt;
+  size_t count = 0;
+  const FarPoint* brightest = nullptr;
+  for (const auto& light : environment.lights)
+    if (const FarPoints* points = light->points())
+      for (const FarPoint& p : points->points) {
+        if (p.moving || p.direction.z < 0) continue;
+        ++count;
+        if (!brightest || p.v < brightest->v) brightest = &p;
+      }
+  if (count == 0) return std::nullopt;
+  const bool stokes = ChannelPlan(sensor.channels()).of_stokes();
+  const std::set<std::string> names = without_images(tracer, optics, stokes || tracer.periodic());
+  if (names.empty()) return std::nullopt;
+  std::string listed;
+  for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
+  constexpr double kCell = 3.05e-3;  // sr, 10 square degrees
+  const double bright = brightest->scale * kVegaIrradiance * flux_of(brightest->v);
+  return Diagnostic{
+      Dr::caustics_not_found,
+      strf(
+          "sensor '%s': stars and planets (%zu) have no images in smooth surfaces (%s)%s: there each is spread over a "
+          "cell of 3 degrees, the brightest (%s, V = %.2f) as some %.2g W/(m2 sr um) at 0.55 um in place of a glint of "
+          "%.2g W/(m2 um) times the reflectance; the mean is right, the glints are left out",
+          sensor.name().c_str(), count, listed.c_str(),
+          stokes              ? " seen by a polarimeter"
+          : tracer.periodic() ? " of a scene that repeats itself"
+                              : " that are curved, move or look in too many directions",
+          brightest->name.c_str(), brightest->v, bright / kCell, bright)};
 }
 
 }  // namespace suite

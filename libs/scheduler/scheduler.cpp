@@ -275,7 +275,7 @@ class Job {
     check_capture(sensor, capture, kit);
     if (options_.diagnose)
       for (const Diagnostic& d : diagnose_light_paths(*tracer_, sources_, *kit.optics, options_.pipeline,
-                                                      goals_of(item).all.max_paths, sensor))
+                                                      goals_of(item).all.max_paths, sensor, *kit.environment))
         if (diagnosed_.insert(d.text).second) options_.diagnose(d);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;

@@ -21,9 +21,10 @@ namespace suite {
 constexpr double kApart = 0.02, kSkipped = 1e-3;
 std::vector<Diagnostic> diagnose_surroundings(const Tracer& tracer, const Optics& optics);
 
-// These, after what paths of at most so many a problem will not find (diagnose_lost_light), and for a sensor that sees
-// polarisation which techniques are off.
+// These, after what paths of at most so many a problem will not find (diagnose_lost_light), for a sensor that sees
+// polarisation which techniques are off, and which surfaces have no images of stars (diagnose_points).
 std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
-                                             const PipelineOptions& options, uint32_t paths, const Sensor& sensor);
+                                             const PipelineOptions& options, uint32_t paths, const Sensor& sensor,
+                                             const Environment& environment);
 
 }  // namespace suite

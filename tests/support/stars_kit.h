@@ -17,12 +17,13 @@ inline CelestialSphere sphere() {
   const Instant t = instant_from_utc(parse_iso8601(kUtc));
   return CelestialSphere(SceneFrame(kPlace), julian_tt(t), julian_ut1(t, 0));
 }
-inline SourceSpecs stars_alone(std::vector<CatalogueStar> stars) {
+inline SourceSpecs stars_alone(std::vector<CatalogueStar> stars, bool in_view = true) {
   NightSkyLightSpec night;
   night.scale = {0, 0, 0, 0, 1};
   night.catalogue = std::make_shared<const std::vector<CatalogueStar>>(std::move(stars));
   night.time.utc = kUtc;
   night.place = kPlace;
+  night.in_view = in_view;
   SourceSpecs sources;
   sources.add(night);
   return sources;

@@ -131,6 +131,8 @@ def brighter(world, factor):
             made.sim[key][what] = times_number(made.sim[key][what], factor)
     if "night_sky" in made.sim:
         made.sim["night_sky"]["scale"] = {part: by * factor for part, by in made.sim["night_sky"]["scale"].items()}
+        for satellite in made.sim["night_sky"].get("satellites", []):
+            satellite["area_m2"] *= factor
     for lamp in made.sim["lamps"]:
         if "map" in lamp:  # whose unit says how much it is
             lamp["map"]["scale"] *= factor

@@ -1,4 +1,6 @@
 """Rows of air and lights: what stands in the simulation."""
+import datetime
+import math
 
 
 def air_none(d):
@@ -83,7 +85,28 @@ def night_sky(d):
     if d.maybe("star_catalogue", 0.3):
         spec["catalogue"] = catalogue(d)
     spec["scale"] = {part: round(scale * d.u(0.2, 1)) for part in parts}
+    if spec["resolve_stars"] == "in_view":
+        if d.maybe("scintillation", 0.5):
+            spec["scintillation"] = {"seed": d.one(1, 2, 3)}
+        if d.maybe("satellites", 0.5):
+            spec["satellites"] = [satellite(d, spec["time_utc"], spec["place"]) for _ in range(d.one(1, 3))]
     d.world.sim["night_sky"] = spec
+
+
+def satellite(d, utc, place):
+    """One that passes within some 4 degrees of a place at a date, as wide as a town: as bright as the stars here. A circle; sidereal time to 0.1 degrees."""
+    t = datetime.datetime.fromisoformat(utc.replace("Z", ""))
+    day = (t - datetime.datetime(2000, 1, 1, 12)).total_seconds() / 86400
+    latitude = math.radians(place["latitude_deg"] + d.u(-3, 3))
+    ascension = math.radians(280.4606 + 360.9856474 * day + place["longitude_deg"] + d.u(-3, 3))
+    tilt = math.radians(d.u(75, 105))
+    along = math.asin(math.sin(latitude) / math.sin(tilt))
+    node = math.degrees(ascension - math.atan2(math.cos(tilt) * math.sin(along), math.cos(along))) % 360
+    revolutions = 86400 / (2 * math.pi) * math.sqrt(3.986004e14 / (6.378e6 + 1e3 * d.u(500, 900)) ** 3)
+    first = f"1 00001U 00001A   {t.year % 100:02}{t.timetuple().tm_yday + (t.hour + t.minute / 60) / 24:012.8f}  .00000000  00000-0  00000-0 0    1"
+    second = f"2 00001 {math.degrees(tilt):8.4f} {node:8.4f} 0001000   0.0000 {math.degrees(along) % 360:8.4f} {revolutions:11.8f}    1"
+    return {"tle_lines": [line + str(sum(int(c) if c.isdigit() else c == "-" for c in line) % 10) for line in (first, second)],
+            "area_m2": round(d.u(1e5, 4e5)), "albedo": d.u(0.2, 1), "name": d.one("a", "b")}
 
 
 def catalogue(d):
@@ -144,7 +167,7 @@ ROWS = [
                                                               "profile_air", "profile_no_adjacency", "traced_air", "gases_air")}),
     ("night_sky", "light", night_sky, far(1.3, ("reciprocal", "moved", "later"))),  # stands by date: is not turned, and moves as time goes on
     ("city_glow", "detail", None, {"without": tuple(air for air in ONE_SKY if air.endswith("air") or air == "profile_no_adjacency") + ("layered_air",)}),
-    ("star_catalogue", "detail", None),
+    ("star_catalogue", "detail", None), ("scintillation", "detail", None), ("satellites", "detail", None),
     ("lamp_point", "light", lamp("point"), NOT_FURNACE), ("lamp_spot", "light", lamp("spot"), NOT_FURNACE),
     ("lamp_distribution", "light", lamp_distribution, NOT_FURNACE), ("lamp_scheduled", "light", lamp_scheduled, {"without": ("furnace", "still_world")}),
 ]

@@ -7,6 +7,7 @@
 #include "light/kinds/phased_disk.h"
 #include "light/kinds/rows.h"
 #include "light/kinds/solar_spectrum.h"
+#include "motion/moon_face.h"
 #include "motion/ut1.h"
 
 namespace suite {
@@ -101,6 +102,15 @@ Curve sum_of(const Curve& a, const Curve& b) {  // over the same wavelengths
   return a.is_constant() ? Curve::constant(y[0]) : Curve(a.wavelength_um(), std::move(y), a.outside());
 }
 
+// Empty where there is none.
+std::string sentence_of(const LunarEclipse& eclipse) {
+  if (eclipse.penumbral <= 0) return {};
+  return strf(
+      "moon: a lunar eclipse, which is left out: %.0f %% of the Moon's diameter stand in the Earth's umbra, "
+      "where 1e-6 to 1e-4 of its light would be left, and %.0f %% in its penumbra",
+      100 * std::clamp(eclipse.umbral, 0.0, 1.0), 100 * std::min(1.0, eclipse.penumbral));
+}
+
 class MoonLight final : public BodySpec {
  public:
   explicit MoonLight(MoonSpec spec) : BodySpec(spec.disk), spec_(std::move(spec)) {}
@@ -180,12 +190,17 @@ MoonSpec resolved(MoonSpec moon, const LightMoment& at) {
     g.phase = angle_between(normalized(to_sun), -body.direction);
     g.sun_distance_au = length(to_sun) / kAstronomicalUnit;
     g.observer_distance = body.distance;
-    // Waxing: the Sun stands west of the Moon as the hour circle turns. The fit's longitude of the Sun is the signed
-    // phase.
-    const double later = moon_phase_angle(instant + 3600), now = moon_phase_angle(instant);
-    g.sun_longitude = later < now ? g.phase : -g.phase;
-    at.said.push_back(sentence("moon", time, at.seconds, body,
-                               strf("phase angle %.2f degrees, %.0f km", g.phase / kDegree, body.distance * 1e-3)));
+    const JulianDate tt = julian_tt(instant);
+    const MoonFace face =
+        moon_face(CelestialSphere(frame, tt, julian_ut1(instant, dut1)), tt, body.direction, *moon.to_sun);
+    g.sun_longitude = face.sun_longitude;
+    g.observer_latitude = face.latitude, g.observer_longitude = face.longitude;
+    at.said.push_back(sentence(
+        "moon", time, at.seconds, body,
+        strf("phase angle %.2f degrees, %.0f km, libration %.1f degrees in longitude and %.1f in "
+             "latitude",
+             g.phase / kDegree, body.distance * 1e-3, g.observer_longitude / kDegree, g.observer_latitude / kDegree)));
+    if (const std::string eclipse = sentence_of(lunar_eclipse(instant)); !eclipse.empty()) at.said.push_back(eclipse);
     moon.disk.time.reset();
   }
   if (moon.by_phase) {

@@ -13,7 +13,7 @@ namespace suite {
 struct MoonGeometry {
   double phase = 0;          // rad, Sun-Moon-observer angle, 0 = full
   double sun_longitude = 0;  // rad, selenographic longitude of the Sun, about the signed phase (positive before full)
-  double observer_latitude = 0;        // rad, selenographic (libration); 0 when unknown, which costs up to 4 %
+  double observer_latitude = 0;        // rad, selenographic (libration, moon_face.h); 0 without a date: up to 4 % off
   double observer_longitude = 0;       // rad
   double sun_distance_au = 1;          // Sun to Moon
   double observer_distance = 384.4e6;  // m, Moon to observer

@@ -231,7 +231,7 @@ class NightSkyLight final : public LightSpec {
           "degrees, in views as well");
     if (points && !traced && !now.media)
       now.points =
-          std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1, air_of(all))));
+          std::make_shared<const FarPoints>(points_of(CelestialSphere(now.frame, now.tt, now.ut1), air_of(all)));
     all.lights[own] = std::make_shared<const NightSkyLight>(spec_, std::move(now));
   }
 
@@ -260,15 +260,16 @@ class NightSkyLight final : public LightSpec {
     return air;
   }
   double scale(NightPart part) const { return spec_.scale[static_cast<size_t>(part)]; }
-  FarPoints points_of(const CelestialSphere& sphere) const {
+  FarPoints points_of(const CelestialSphere& sphere, const std::optional<SurfaceAir>& air) const {
     FarPoints all;
+    if (air) all.air = std::make_shared<const StarRefraction>(now_->frame, *air);
     all.pole = sphere.pole();
     all.seconds = now_->seconds;
     all.scintillation = spec_.scintillation, all.height = now_->frame.origin().height_m;
     if (const double s = scale(NightPart::stars); spec_.catalogue && s > 0)
       for (const CatalogueStar& star : *spec_.catalogue)
         if (star.v <= spec_.faintest)
-          all.points.push_back({star.name, star.v, s, star.kelvin, {}, true, {}, sphere.seen(star.place)});
+          all.points.push_back({star.name, star.v, s, star.kelvin, {}, true, {}, sphere.without_air(star.place)});
     if (const double s = scale(NightPart::planets); s > 0)
       for (const SeenPlanet& p : now_->planets)
         all.points.push_back({name_of(p.planet),
@@ -278,7 +279,7 @@ class NightSkyLight final : public LightSpec {
                               std::make_shared<const Curve>(planet_shape(p.planet)),
                               false,
                               {},
-                              sphere.seen(p.place)});
+                              sphere.without_air(p.place)});
     for (size_t i = 0; i < now_->satellites.size(); ++i) {
       const SunlitPoint& moving = *now_->satellites[i];
       const double share = moving.share(now_->seconds, {}) * solar_irradiance().mean(0.545, 0.555) / kVegaIrradiance;

@@ -4,6 +4,7 @@
 #include "light/kinds/rows.h"
 #include "light/kinds/solar_spectrum.h"
 #include "math/warps.h"
+#include "motion/moon_face.h"
 #include "motion/ut1.h"
 
 namespace suite {
@@ -20,8 +21,9 @@ class SunLight final : public BodySpec {
     if (!disk_.time) return nullptr;
     const SourceTime& time = *disk_.time;
     const Instant epoch = instant_of(time), instant = epoch + at.seconds;
-    const SkyBody body =
-        sun_at(frame_of(at.scene, time.where, "a sun set by date"), {}, instant, dut1_at(instant, epoch, at.dut1));
+    const SceneFrame frame = frame_of(at.scene, time.where, "a sun set by date");
+    const double dut1 = dut1_at(instant, epoch, at.dut1);
+    const SkyBody body = sun_at(frame, {}, instant, dut1);
     SunSpec now = disk_;
     now.time.reset();
     now.direction = body.direction;
@@ -29,6 +31,11 @@ class SunLight final : public BodySpec {
     const double au = body.distance / kAstronomicalUnit;
     if (now.at_1_au) now.irradiance = now.irradiance.scaled(1 / (au * au));
     at.said.push_back(sentence(key(), time, at.seconds, body, strf("%.5f AU", au)));
+    constexpr double kNew = 177 * kDegree;  // of the Moon's phase, when it may stand before the Sun
+    if (moon_phase_angle(instant) > kNew)
+      if (const double covered = solar_eclipse(frame, {}, instant, dut1); covered > 0)
+        at.said.push_back(strf("sun: a solar eclipse, which is left out: the Moon covers %.0f %% of the Sun's diameter",
+                               100 * std::min(1.0, covered)));
     return make_light(std::move(now));
   }
 

@@ -1,11 +1,13 @@
 // Stars in flat smooth surfaces: each image is where the mirror has it and as bright as Fresnel's equations say, panes
 // let stars through, and what is left to chance is left once.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "optics/fresnel.h"
+#include "support/media_kit.h"
 #include "support/stars_kit.h"
 
 namespace suite {
@@ -46,6 +48,8 @@ TEST(MirroredStars, WaterHasFresnelsShare) {
   const Dir star = star_now();
   PlatformKit kit;
   kit.render(lake(smooth(kIndex)), stars_alone({kStar}), at(in_water(star), 30.3 * kStep, -20.2 * kStep));
+  std::printf("energy over Fresnel's share - 1: %.1e\n",
+              energy(kit.shots[0], 1e4) / (fresnel(star.z) * above(kStar)) - 1);
   EXPECT_NEAR(energy(kit.shots[0], 1e4) / (fresnel(star.z) * above(kStar)), 1, 1e-4);
   const std::vector<Listed> seen = table_of(kit.shots[0]);
   ASSERT_EQ(seen.size(), 1u);
@@ -157,6 +161,36 @@ TEST(MirroredStars, ImagesAreHidden) {
   EXPECT_EQ(seen({quad(50, 0, 0)}), 1u);
   EXPECT_EQ(seen({quad(50, 0, 0), wall}), 0u);
   EXPECT_EQ(seen({quad(0.1, 0, 0), quad(50, -0.1, 1)}), 0u);
+}
+
+// Where surfaces have no images, a run says so once, with the surfaces and how bright what is left out is; where all
+// have, or no star is a point, it says nothing.
+TEST(MirroredStars, SurfacesWithoutImagesAreNamed) {
+  const Dir star = star_now();
+  const auto told = [&](const std::shared_ptr<Scene>& scene, bool in_view, const std::string& more) {
+    SourceSpecs sources = stars_alone({kStar}, in_view);
+    PlatformKit kit;
+    std::vector<std::unique_ptr<Sensor>> sensors;
+    sensors.push_back(kit.make(at(in_water(star)) + more));
+    JobOptions job;
+    job.progress = false;
+    std::string said;
+    job.diagnose = [&](const Diagnostic& d) {
+      if (d.code == Dr::caustics_not_found) said += line_of(d);
+    };
+    run_job(scene, sources, sensors, job);
+    return said;
+  };
+  auto ball = lake(mirror(1));
+  ball->materials.push_back(material("ball", mirror(0.5)));
+  place(*ball, PrimitiveKind::sphere, {0.1}, static_cast<uint32_t>(ball->materials.size() - 1), translation({0, 0, 9}));
+  check_scene(*ball, "ball");
+  EXPECT_THAT(told(ball, true, ""),
+              testing::AllOf(testing::HasSubstr("stars and planets (1)"),
+                             testing::HasSubstr("('ball') that are curved"), testing::HasSubstr("[DR207]")));
+  EXPECT_EQ(told(ball, false, ""), "");
+  EXPECT_EQ(told(lake(mirror(1)), true, ""), "");
+  EXPECT_THAT(told(lake(mirror(1)), true, "stokes: linear\n"), testing::HasSubstr("('water') seen by a polarimeter"));
 }
 
 }  // namespace

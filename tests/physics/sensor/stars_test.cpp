@@ -20,6 +20,7 @@ TEST(Stars, FrameCameraKeepsTheirEnergyAndPlace) {
   for (const auto& [right, up] : {std::pair{0.0, 0.0}, {30.3 * kStep, -70.2 * kStep}}) {
     PlatformKit kit;
     kit.render(ground(), stars_alone({kStar}), camera(star, right, up));
+    std::printf("energy over that of the star - 1: %.1e\n", energy(kit.shots[0], 1e4) / above(kStar) - 1);
     EXPECT_NEAR(energy(kit.shots[0], 1e4) / above(kStar), 1, 1e-4);
     const std::vector<Listed> seen = table_of(kit.shots[0]);
     ASSERT_EQ(seen.size(), 1u);
@@ -215,6 +216,31 @@ TEST(Stars, AirDimsThem) {
   const std::vector<Listed> seen = table_of(kit.shots[0]);
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_NEAR(seen[0].irradiance / above(kStar), std::exp(-0.3 * 0.998 / star.z), 2e-3);  // 2 m up
+}
+
+// From 400 km up, with air below, a star stands where it is without air; on the ground it is lifted.
+TEST(Stars, FromOrbitAirLiftsNoneAboveIt) {
+  const Dir star = sphere().without_air(kStar.place);
+  SourceSpecs sources = stars_alone({kStar});
+  AtmosphereSpec air;
+  air.heights = {0, 1000};
+  air.rayleigh = false;
+  air.temperature_k = {280};
+  sources.atmosphere = air;
+  const auto place = [&](double height) {
+    std::string text = camera(star, 0, 0);
+    const Vec3 at = Vec3{0, 0, height} + star * 1e3;
+    text.replace(text.find("[0, 0, 2]"), 9, strf("[0, 0, %g]", height));
+    const size_t look = text.find("look_at_m: ");
+    text.replace(look, text.find("\n", look) - look, strf("look_at_m: [%.17g, %.17g, %.17g]", at.x, at.y, at.z));
+    PlatformKit kit;
+    kit.render(ground(), sources, text);
+    const std::vector<Listed> seen = table_of(kit.shots.at(0));
+    return seen.size() == 1 ? std::hypot(seen[0].column - 100, seen[0].row - 100) : INFINITY;
+  };
+  // Pixels of 20.6 arc seconds; R = 58 arc seconds times the tangent of the zenith distance on the ground.
+  EXPECT_LT(place(400e3), 1);
+  EXPECT_NEAR(place(2), 58.2 * std::tan(std::acos(star.z)) / 20.63, 1);
 }
 
 // A lens with distortion and a Gaussian spot: energy by the pixels' solid angles, centre by the lens.

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "light/kinds/night_sky.h"
 #include "tests/support/lit_air_kit.h"
 #include "tests/support/message_of.h"
 #include "tests/support/stokes_kit.h"
@@ -101,7 +102,7 @@ TEST(StokesAir, OtherAirIsThatOfTracedAir) {
         << name;
 }
 
-std::string said(AirSpec air, std::vector<Band> bands) {
+std::string said(AirSpec air, std::vector<Band> bands, bool by_night = false) {
   std::string all;
   JobOptions job;
   job.progress = false;
@@ -109,6 +110,13 @@ std::string said(AirSpec air, std::vector<Band> bands) {
   SourceSpecs sources;
   sources.air = std::make_shared<const AirSpec>(std::move(air));
   sources.add(SunSpec{{dir_from_angles(0.5, 0.3), 0, Curve::constant(1)}});
+  if (by_night) {
+    NightSkyLightSpec night;
+    night.scale = {0, 1};  // airglow
+    night.time.utc = "2026-03-20T22:00:00Z";
+    night.place = Geodetic{49.4, 8.7, 0};
+    sources.add(night);
+  }
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<StokesRays>(std::vector<Ray>{kViews[0]}, 4, Polarimetry{}, std::move(bands)));
   run_job(ground_with_glass(0.2), sources, sensors, job);
@@ -118,6 +126,8 @@ std::string said(AirSpec air, std::vector<Band> bands) {
 TEST(StokesAir, TheResidualEstimatorThatIsOffIsNamed) {
   AirSpec air = molecules();
   EXPECT_NE(said(air, one_band()).find("[DR208]"), std::string::npos);
+  EXPECT_EQ(said(air, one_band()).find("night sky is left out"), std::string::npos);
+  EXPECT_NE(said(air, one_band(), true).find("night sky is left out"), std::string::npos);
   air.adjacency = false;
   EXPECT_EQ(said(air, one_band()).find("[DR208]"), std::string::npos);
 }
