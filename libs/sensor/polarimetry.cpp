@@ -65,6 +65,14 @@ std::optional<Polarimetry> read_polarimetry(const Params& params, std::vector<st
   return how;
 }
 
+double joint_reach(double confidence, double degrees) {
+  return degrees * std::expm1(-2 / (degrees - 1) * std::log1p(-confidence));
+}
+
+bool in_region(double q_off, double u_off, const double (&C)[6], double reach) {
+  return C[5] * q_off * q_off - 2 * C[4] * q_off * u_off + C[3] * u_off * u_off <= reach * (C[3] * C[5] - C[4] * C[4]);
+}
+
 LinearPolarisation linear_polarisation(const double (&S)[3], const double (&C)[6]) {
   const auto [I, Q, U] = S;
   LinearPolarisation r{NAN, NAN, NAN, NAN, NAN, true};
@@ -114,6 +122,9 @@ void add_polarisation(Delivery& d) {
     for (const char* what :
          {" dolp", " dolp_error", " dolp_debiased", " aolp", " aolp_error", " aolp_undefined", " depolarised_share"})
       product.bands.push_back(b.name + what);
+  Product together{"covariance", "(W/(m2 sr um))^2", false, {}, {}};
+  for (const Band& b : d.bands)
+    for (const char* what : {" II", " IQ", " IU", " QQ", " QU", " UU"}) together.bands.push_back(b.name + what);
   for (size_t i = 0; i < r.problems(); ++i)
     for (size_t b = 0; b < r.bands; ++b) {
       const auto at = [&](size_t channel) { return (i * r.channels + channel) * r.bands + b; };
@@ -121,12 +132,14 @@ void add_polarisation(Delivery& d) {
       const double error[3] = {r.standard_error[at(0)], r.standard_error[at(q)], r.standard_error[at(u)]};
       double C[6];
       covariances(r, i, b, error, C);
+      together.values.insert(together.values.end(), std::begin(C), std::end(C));
       const LinearPolarisation p = linear_polarisation(S, C);
       const double share = lost < r.channels && S[0] > 0 ? r.radiance[at(lost)] / S[0] : 0;
       product.values.insert(product.values.end(), {p.degree, p.degree_error, p.debiased, p.angle, p.angle_error,
                                                    p.undefined ? 1.0 : 0.0, share});
     }
   d.products.push_back(std::move(product));
+  d.products.push_back(std::move(together));
 }
 
 std::string text_of(const Polarimetry& how) {

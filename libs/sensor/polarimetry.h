@@ -25,9 +25,14 @@ struct LinearPolarisation {
 // is p - b^2 (1 - exp(-p^2/b^2)) / (2 p) with b the error (S. Plaszczynski et al., MNRAS 439, 2014). NaN where I is not
 // positive.
 LinearPolarisation linear_polarisation(const double (&S)[3], const double (&C)[6]);
+// The region of a confidence about (Q, U) is where d' C^-1 d is not above this, d being what Q and U are off by and C a
+// covariance of so many degrees of freedom, above 1 (H. Hotelling 1931: n (a^(-2 / (n - 1)) - 1), a = 1 - confidence).
+double joint_reach(double confidence, double degrees);
+bool in_region(double q_off, double u_off, const double (&C)[6], double reach);
 
 // Of a delivery whose result has Q and U: bands dolp, dolp_error, dolp_debiased, aolp, aolp_error, aolp_undefined of
-// each band; share of the light that counts as depolarised because no matrix is known. Nothing else.
+// each band, share of the light that counts as depolarised because no matrix is known; a product `covariance` of II, IQ,
+// IU, QQ, QU and UU. Nothing else.
 void add_polarisation(Delivery& delivery);
 // In words, of the header.
 std::string text_of(const Polarimetry& how);
