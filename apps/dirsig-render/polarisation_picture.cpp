@@ -20,6 +20,16 @@ Rgb polarisation_color(double angle_deg, double degree, double light) {
   return {part(0), part(2), part(4)};
 }
 
+// The degree that is shown by full colours: 99 % of the pixels have less.
+static double full_saturation(std::vector<float> degrees) {
+  if (degrees.empty()) return 1;
+  const auto at = degrees.begin() + static_cast<long>(0.99 * static_cast<double>(degrees.size() - 1));
+  std::nth_element(degrees.begin(), at, degrees.end());
+  for (const double full : {0.02, 0.05, 0.1, 0.2, 0.5})
+    if (double{*at} <= full) return full;
+  return 1;
+}
+
 void PolarisationPicture::append(const CaptureResult& rows, const Product& polarisation) {
   const size_t per_pixel = polarisation.bands.size(), each = per_pixel / rows.bands, band = (rows.bands - 1) / 2;
   const auto column = [&](const std::string& ending) {
@@ -45,6 +55,9 @@ void PolarisationPicture::write(const std::string& path) const {
   for (size_t i = 2; i < values_.size(); i += 3) light.push_back(values_[i]);
   const std::array<double, 2> ends =
       picture_ends(light, std::vector<bool>(light.size(), false), PreviewSpec{}, 0);
+  std::vector<float> degrees;
+  for (size_t i = 1; i < values_.size(); i += 3) degrees.push_back(values_[i]);
+  const double full = full_saturation(std::move(degrees));
   const BarLayout at(columns, rows, false);
   Canvas canvas(at.width, at.height, kBlack);
   for (int r = 0; r < rows; ++r)
@@ -53,12 +66,12 @@ void PolarisationPicture::write(const std::string& path) const {
       const float* const of = &values_[3 * pixel];
       const double t = std::clamp(double{of[2]} / ends[1], 0.0, 1.0);
       canvas.fill(c * at.enlarged, r * at.enlarged, at.enlarged, at.enlarged,
-                  polarisation_color(double{of[0]}, double{of[1]}, std::pow(t, 1 / 2.2)));
+                  polarisation_color(double{of[0]}, double{of[1]} / full, std::pow(t, 1 / 2.2)));
     }
   write_png(path, canvas,
             command_line() + strf("; band %s: hue the angle of linear polarisation (red 0, green 60, blue 120 degrees), saturation "
-                                  "the debiased degree, brightness the intensity up to %g W/(m2 sr um), gamma 2.2",
-                                  band_.c_str(), ends[1]));
+                                  "the debiased degree up to %g, brightness the intensity up to %g W/(m2 sr um), gamma 2.2",
+                                  band_.c_str(), full, ends[1]));
 }
 
 }  // namespace suite
