@@ -55,8 +55,8 @@ struct OutputWriter::Image {
   std::optional<Preview> preview;
   std::vector<TruthPicture> pictures;  // of truth
   std::optional<PolarisationPicture> polarisation;
-  std::vector<float> all;              // [pixel][value], for formats that take a whole picture
-  std::vector<float> all_quality;      // [pixel], likewise
+  std::vector<float> all;          // [pixel][value], for formats that take a whole picture
+  std::vector<float> all_quality;  // [pixel], likewise
   std::optional<LocatedPixels> located;
   size_t unknown = 0;               // numbers that are no quantity
   std::vector<double> correlation;  // [band][band], summed over rows

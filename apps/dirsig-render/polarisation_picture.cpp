@@ -42,8 +42,9 @@ void PolarisationPicture::append(const CaptureResult& rows, const Product& polar
   for (size_t i = 0; i < rows.problems(); ++i) {
     const double* const of = &polarisation.values[i * per_pixel];
     const bool grey = of[undefined] != 0 || !std::isfinite(of[angle]);
-    values_.insert(values_.end(), {grey ? 0.0f : static_cast<float>(of[angle]), grey ? 0.0f : static_cast<float>(of[degree]),
-                                   static_cast<float>(rows.radiance[i * rows.values_per_problem() + band])});
+    values_.insert(values_.end(),
+                   {grey ? 0.0f : static_cast<float>(of[angle]), grey ? 0.0f : static_cast<float>(of[degree]),
+                    static_cast<float>(rows.radiance[i * rows.values_per_problem() + band])});
   }
 }
 
@@ -53,8 +54,7 @@ void PolarisationPicture::write(const std::string& path) const {
             rows = static_cast<int>((rows_ + stride - 1) / stride);
   std::vector<float> light;
   for (size_t i = 2; i < values_.size(); i += 3) light.push_back(values_[i]);
-  const std::array<double, 2> ends =
-      picture_ends(light, std::vector<bool>(light.size(), false), PreviewSpec{}, 0);
+  const std::array<double, 2> ends = picture_ends(light, std::vector<bool>(light.size(), false), PreviewSpec{}, 0);
   std::vector<float> degrees;
   for (size_t i = 1; i < values_.size(); i += 3) degrees.push_back(values_[i]);
   const double full = full_saturation(std::move(degrees));
@@ -69,9 +69,10 @@ void PolarisationPicture::write(const std::string& path) const {
                   polarisation_color(double{of[0]}, double{of[1]} / full, std::pow(t, 1 / 2.2)));
     }
   write_png(path, canvas,
-            command_line() + strf("; band %s: hue the angle of linear polarisation (red 0, green 60, blue 120 degrees), saturation "
-                                  "the debiased degree up to %g, brightness the intensity up to %g W/(m2 sr um), gamma 2.2",
-                                  band_.c_str(), full, ends[1]));
+            command_line() +
+                strf("; band %s: hue the angle of linear polarisation (red 0, green 60, blue 120 degrees), saturation "
+                     "the debiased degree up to %g, brightness the intensity up to %g W/(m2 sr um), gamma 2.2",
+                     band_.c_str(), full, ends[1]));
 }
 
 }  // namespace suite

@@ -54,7 +54,8 @@ AnalyserTrain read_cell(const Params& cell, const Params& around) {
   const double extinction = around.number_in("extinction", 1, kIdeal, "", kIdeal);
   const double tilt = around.number_in("tilt_deg", -360, 360, "degrees", 0);
   OpticalElement e;
-  e.matrix = polarizer((cell.as_number_in(-360, 360, "degrees") + tilt) * kDegree, around.find("extinction") ? 1 / extinction : 0);
+  e.matrix = polarizer((cell.as_number_in(-360, 360, "degrees") + tilt) * kDegree,
+                       around.find("extinction") ? 1 / extinction : 0);
   return AnalyserTrain({e});
 }
 
@@ -79,7 +80,8 @@ Stokes AnalyserTrain::row(const Band& band) const {
   Stokes sum{};
   double weight = 0;
   for (int i = 0; i < steps; ++i) {
-    const double um = steps == 1 ? band.center_um : band.low_um() + (i + 0.5) / steps * (band.high_um() - band.low_um());
+    const double um =
+        steps == 1 ? band.center_um : band.low_um() + (i + 0.5) / steps * (band.high_um() - band.low_um());
     const double share = steps == 1 ? 1 : band.response.at(um);
     const Mueller m = at(um);
     for (int k = 0; k < 4; ++k) sum[static_cast<size_t>(k)] += share * m(0, k);

@@ -36,8 +36,8 @@ size_t channel_of(std::span<const std::string> channels, const char* name);
 // Covariances of I, Q and U of a pixel: variances as the errors have them, correlations as the groups of samples do.
 void covariances(const CaptureResult& r, size_t problem, size_t band, const double (&error)[3], double (&C)[6]);
 // Of a delivery whose result has Q and U: bands dolp, dolp_error, dolp_debiased, aolp, aolp_error, aolp_undefined of
-// each band, share of the light that counts as depolarised because no matrix is known; a product `covariance` of II, IQ,
-// IU, QQ, QU and UU. Nothing else.
+// each band, share of the light that counts as depolarised because no matrix is known; a product `covariance` of II,
+// IQ, IU, QQ, QU and UU. Nothing else.
 void add_polarisation(Delivery& delivery);
 // In words, of the header.
 std::string text_of(const Polarimetry& how);

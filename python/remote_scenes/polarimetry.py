@@ -18,13 +18,13 @@ def stokes(frames, analysers, variances=None):
     """I, Q, U (or as many as `analysers` has columns) from frames [analyser, ...], weighted by 1 / variances where those are given.
 
     Returns values [component, ...] and covariances [component, component, ...]; covariances are those of variances, or of variances
-    of 1. ValueError: fewer analysers than components, or analysers that cannot tell them apart."""
+    of 1. ValueError: fewer analysers than components, or analysers that do not determine them."""
     y, A = np.asarray(frames, float), np.asarray(analysers, float)
     n = A.shape[1]
     if y.shape[0] != A.shape[0]:
         raise ValueError(f"{y.shape[0]} frames of {A.shape[0]} analysers")
     if np.linalg.matrix_rank(A, tol=1e-9) < n:
-        raise ValueError(f"these analysers do not tell {n} components apart")
+        raise ValueError(f"these analysers do not determine {n} components")
     w = np.ones_like(y) if variances is None else 1 / np.asarray(variances, float)
     normal = np.einsum("ki,kj,k...->...ij", A, A, w)
     covariance = np.linalg.inv(normal)

@@ -139,7 +139,8 @@ class Platform final : public Sensor, public SeesPoints {
     Piece piece;
     const Capture& capture = spec_.tasks[result.task].captures[result.capture];
     const Instrument& instrument = spec_.instruments[array.instrument];
-    turn_upright(spec_, [&](double t) { return pose(instrument, prepared_for(capture), t); }, result);
+    turn_upright(
+        spec_, [&](double t) { return pose(instrument, prepared_for(capture), t); }, result);
     if (const auto prepared = prepared_.extract(key_of(capture))) piece.points = std::move(prepared.mapped().points);
     piece.products = detect(spec_, segment, result, part.event);
     piece.capture = result.capture;

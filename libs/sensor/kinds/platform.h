@@ -56,8 +56,8 @@ struct FocalArray {
   Readout readout;
   uint32_t time_bins = 1;  // parts of the exposure, each with a picture of its own
   std::optional<DetectorSpec> detector;
-  std::shared_ptr<const ArrayDetector> reader;  // null without counts
-  std::optional<Analysers> analysers;           // before its detectors
+  std::shared_ptr<const ArrayDetector> reader;   // null without counts
+  std::optional<Analysers> analysers;            // before its detectors
   std::vector<std::vector<std::string>> mosaic;  // [row][column]: the band that a detector counts; empty = all bands
   ImageWishes wishes;
   size_t instrument = 0;

@@ -137,7 +137,8 @@ class SeenRadiance {
     if (!analysers) return;
     analysers_ = &*analysers;
     rows_ = analyser_rows(segment, *analysers);
-    for (size_t c = 0; c < 3; ++c) channel_[c + 1] = channel_of(spec.channels, std::array{"stokes_q", "stokes_u", "stokes_v"}[c]);
+    for (size_t c = 0; c < 3; ++c)
+      channel_[c + 1] = channel_of(spec.channels, std::array{"stokes_q", "stokes_u", "stokes_v"}[c]);
   }
   double of(size_t problem, size_t band, const Exposed& from, uint64_t frame) const {
     if (!analysers_) return mean(problem, 0, band);
@@ -153,8 +154,10 @@ class SeenRadiance {
   double mean(size_t problem, size_t channel, size_t band) const {
     double sum = 0;
     for (size_t t = 0; t < result_.bins; ++t)
-      sum += result_.radiance[((problem * result_.channels + channel) * result_.bins + t) * result_.bands + bands_ + band] /
-             static_cast<double>(result_.bins);
+      sum +=
+          result_
+              .radiance[((problem * result_.channels + channel) * result_.bins + t) * result_.bands + bands_ + band] /
+          static_cast<double>(result_.bins);
     return sum;
   }
   const CaptureResult& result_;

@@ -13,9 +13,7 @@ namespace suite {
 
 namespace {
 
-bool in_picture(const PlatformSpec& spec) {
-  return spec.polarimetry && spec.polarimetry->frame == StokesFrame::image;
-}
+bool in_picture(const PlatformSpec& spec) { return spec.polarimetry && spec.polarimetry->frame == StokesFrame::image; }
 
 // Directions that the corners and the middle of an array look in, and what is up in its picture.
 struct Views {
@@ -83,12 +81,13 @@ void choose_frame(const Params& params, PlatformSpec& spec) {
 
 void read_array_analysers(const Params& p, const PlatformSpec& spec, FocalArray& array) {
   if (in_picture(spec) && array.time_bins > 1)
-    throw p.at("time_bins").error("parts of an exposure are not turned into the frame of the picture",
-                                  "stokes_frame: meridian, or leave out time_bins");
+    throw p.at("time_bins")
+        .error("parts of an exposure are not turned into the frame of the picture",
+               "stokes_frame: meridian, or leave out time_bins");
   if (const auto analyser = p.find("analyser")) {
     if (!array.detector) throw analyser->error("there are no detectors behind it", "detector: {...} in the array");
     if (!in_picture(spec))
-      throw analyser->error("analysers are told in the frame of the picture",
+      throw analyser->error("analysers are given in the frame of the picture",
                             "stokes: linear and stokes_frame: image of the platform");
     array.analysers = read_analysers(*analyser);
     const bool circular = std::count(spec.channels.begin(), spec.channels.end(), "stokes_v") > 0;
@@ -140,7 +139,7 @@ void turn_upright(const PlatformSpec& spec, const std::function<Pose(double)>& p
       const double before = Q;
       Q = c * before + s * U, U = c * U - s * before;
       if (result.stokes_covariance.empty()) continue;
-      double *const errors[] = {&result.standard_error[index(0)], &result.standard_error[index(q)],
+      double* const errors[] = {&result.standard_error[index(0)], &result.standard_error[index(q)],
                                 &result.standard_error[index(u)]};
       double C[6];
       covariances(result, i, b, {*errors[0], *errors[1], *errors[2]}, C);

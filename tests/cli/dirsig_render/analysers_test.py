@@ -16,7 +16,9 @@ import numpy as np
 BIN, PYTHON, FOLDER = (pathlib.Path(p).resolve() for p in sys.argv[1:4])
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(PYTHON / "remote_scenes"))
+sys.path.insert(0, str(PYTHON.parent / "sample_scenes"))
 import polarimetry  # noqa: E402  by itself: the package wants xarray
+import side_by_side  # noqa: E402
 
 SCENE = """scene: 1
 materials: {metal: {model: ggx, roughness: 0.02, n: 1.2, k: 1.0}}
@@ -151,6 +153,13 @@ class Analysers(unittest.TestCase):
         self.assertAlmostEqual(angle["level"], 90, delta=0.5)
         for S in (rolled, meridian):
             self.assertAlmostEqual(np.hypot(*S[1:]) / S[0], np.hypot(*level[1:]) / level[0], delta=5e-3)
+
+    def test_previews_show_the_angle_in_hue(self):
+        """Cyan is 90 degrees, green 60: of a rolled camera."""
+        for name, most, least in (("level", (1, 2), (0,)), ("rolled", (1,), (0, 2))):
+            picture = side_by_side.read(FOLDER / "all" / f"{name}_polarisation.png")
+            mean = np.array([list(pixel) for row in picture for pixel in row], float).mean(axis=0)
+            self.assertGreater(min(mean[i] for i in most), 1.3 * max(mean[i] for i in least), (name, mean))
 
     def test_what_cannot_be_is_refused(self):
         for keys, sensor, wanted in (

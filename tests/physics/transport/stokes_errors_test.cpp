@@ -7,8 +7,8 @@
 namespace suite::test {
 namespace {
 
-// 1000 pixels see the same with numbers of their own, of a fixed seed: a share of 0.95 has a standard error of 0.7 %, and
-// is between 0.93 and 0.97 but once in 270 times.
+// 1000 pixels see the same with numbers of their own, of a fixed seed: a share of 0.95 has a standard error of 0.7 %,
+// and is between 0.93 and 0.97 but once in 270 times.
 constexpr size_t kPixels = 1000;
 
 struct Seen {
@@ -17,8 +17,7 @@ struct Seen {
   std::array<double, 3> mean{};
   double degrees = 0;
 };
-Seen see(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, const Ray& ray,
-         Polarimetry how = {}) {
+Seen see(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, const Ray& ray, Polarimetry how = {}) {
   const auto run =
       render(scene, sources, std::make_unique<StokesRays>(std::vector<Ray>(kPixels, ray), 64, std::move(how)));
   Seen seen;
