@@ -49,7 +49,7 @@ void check_names(const Simulation& sim) {
       if (!other.starts_with(one->name() + "_")) continue;
       std::vector<std::string> endings = truth_picture_names();
       for (const char* ending : {"error", "quality", "truth", "material", "tag", "igm", "glt", "geo", "electrons", "dn",
-                                 "counts", "polarisation", "apparent_temperature", "stars"})
+                                 "counts", "polarisation", "covariance", "mosaic", "apparent_temperature", "stars"})
         endings.emplace_back(ending);
       for (const std::string& ending : endings)
         if (other == one->name() + "_" + ending)

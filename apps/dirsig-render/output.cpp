@@ -10,6 +10,7 @@
 #include "formats/envi/envi.h"
 #include "located.h"
 #include "math/stats.h"
+#include "polarisation_picture.h"
 #include "preview.h"
 #include "quantities.h"
 #include "truth_picture.h"
@@ -53,8 +54,9 @@ struct OutputWriter::Image {
   std::vector<std::string> files;
   std::optional<Preview> preview;
   std::vector<TruthPicture> pictures;  // of truth
-  std::vector<float> all;              // [pixel][value], for formats that take a whole picture
-  std::vector<float> all_quality;      // [pixel], likewise
+  std::optional<PolarisationPicture> polarisation;
+  std::vector<float> all;          // [pixel][value], for formats that take a whole picture
+  std::vector<float> all_quality;  // [pixel], likewise
   std::optional<LocatedPixels> located;
   size_t unknown = 0;               // numbers that are no quantity
   std::vector<double> correlation;  // [band][band], summed over rows
@@ -203,6 +205,7 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
                                                        : EnviType::float32;
     x.description = p.name + about;
     m.products.push_back(open(m, base + "_" + p.name, x));
+    if (p.name == "polarisation") m.polarisation.emplace(m.columns, m.rows);
   }
   return m;
 }
@@ -310,7 +313,10 @@ void OutputWriter::append(Image& m, const Delivery& d) const {
     c.file->append(values);
   }
   if (m.located) m.located->append(d, m.next);
-  for (size_t p = 0; p < m.products.size(); ++p) m.products[p]->append(d.products[p].values);
+  for (size_t p = 0; p < m.products.size(); ++p) {
+    m.products[p]->append(d.products[p].values);
+    if (d.products[p].name == "polarisation") m.polarisation->append(result, d.products[p]);
+  }
   // Of an image in parts the correlation is the mean over its rows.
   m.correlation.resize(result.bands * result.bands);
   for (size_t i = 0; i < m.correlation.size(); ++i) m.correlation[i] += result.error_correlation[i] * result.rows;
@@ -341,6 +347,10 @@ void OutputWriter::finish(Image& m, const std::string& base, std::span<const Ban
   write_file(m.files.back(), correlation + "\n");
   m.preview->write(base + ".png");
   m.files.push_back(base + ".png");
+  if (m.polarisation) {
+    m.files.push_back(base + "_polarisation.png");
+    m.polarisation->write(m.files.back());
+  }
   for (const TruthPicture& picture : m.pictures) {
     m.files.push_back(base + "_" + picture.name() + ".png");
     picture.write(m.files.back());

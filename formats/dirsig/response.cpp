@@ -101,7 +101,7 @@ Tree SimulationWriter::band_of(const Item& channel, double low, double high, boo
   const Item *gain = channel.find("@gain"), *bias = channel.find("@bias");
   const double times = gain ? gain->number_in(0, 1e12, Fate::converted, "in the factor of the channel") : 1;
   if (bias && bias->number() != 0) bias->mark(Fate::unsupported, "nothing is added to radiance");
-  plain_type(channel, "polarizer", "none", "light is not polarized here");
+  plain_type(channel, "polarizer", "none", "give the sensor `stokes` or `analyser`");
   plain_type(channel, "dataoutput", "total", "images hold all light");
   if (!counted)
     channel.mark(Fate::converted,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensor/analyser.h"
 #include "sensor/sensors.h"
 
 namespace suite {
@@ -29,21 +30,6 @@ void read_components(const Params& stokes, std::vector<std::string>& add) {
       add.push_back(std::string("stokes_") + component);
 }
 
-// A polarizer, and a retarder before it.
-Mueller read_analyser(const Params& p) {
-  const double angle = p.number_in("polarizer_deg", -360, 360, "degrees") * kDegree;
-  const double extinction = p.number_in("extinction", 1, 1e12, "", 1e12);
-  Mueller m = polarizer(angle, p.find("extinction") ? 1 / extinction : 0);
-  const auto phase = p.find("retarder_deg");
-  if (phase) {
-    m = m * retarder(p.number_in("axis_deg", -360, 360, "degrees") * kDegree,
-                     phase->as_number_in(-360, 360, "degrees") * kDegree);
-  } else if (const auto axis = p.find("axis_deg")) {
-    throw axis->error("there is no retarder", "give retarder_deg, too");
-  }
-  return m;
-}
-
 }  // namespace
 
 std::optional<Polarimetry> read_polarimetry(const Params& params, std::vector<std::string>& channels) {
@@ -61,8 +47,22 @@ std::optional<Polarimetry> read_polarimetry(const Params& params, std::vector<st
       throw params.error("`stokes` has the channel '" + name + "' already");
   channels.insert(channels.begin() + 1, add.begin(), add.end());
   if (frame) how.frame = static_cast<StokesFrame>(frame->as_choice({"meridian", "image", "scattering_plane"}));
-  if (analyser) how.analyser = read_analyser(*analyser);
+  if (analyser) {
+    const AnalyserTrain train = read_train(*analyser);
+    if (train.follows_wavelength())
+      throw analyser->error("the phase of this retarder follows the wavelength, which arrays of a platform know",
+                            "kind: platform, or retarder_deg");
+    how.analyser = train.at(1);
+  }
   return how;
+}
+
+double joint_reach(double confidence, double degrees) {
+  return degrees * std::expm1(-2 / (degrees - 1) * std::log1p(-confidence));
+}
+
+bool in_region(double q_off, double u_off, const double (&C)[6], double reach) {
+  return C[5] * q_off * q_off - 2 * C[4] * q_off * u_off + C[3] * u_off * u_off <= reach * (C[3] * C[5] - C[4] * C[4]);
 }
 
 LinearPolarisation linear_polarisation(const double (&S)[3], const double (&C)[6]) {
@@ -84,14 +84,10 @@ LinearPolarisation linear_polarisation(const double (&S)[3], const double (&C)[6
   return r;
 }
 
-namespace {
-
-size_t channel_of(const Sensor& sensor, const char* name) {
-  const auto channels = sensor.channels();
+size_t channel_of(std::span<const std::string> channels, const char* name) {
   return static_cast<size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin());
 }
 
-// Variances as the errors have them, correlations as the groups of samples do.
 void covariances(const CaptureResult& r, size_t problem, size_t band, const double (&error)[3], double (&C)[6]) {
   const double* const raw = &r.stokes_covariance[(problem * r.bands + band) * 6];
   const double diagonal[3] = {raw[0], raw[3], raw[5]};
@@ -102,18 +98,20 @@ void covariances(const CaptureResult& r, size_t problem, size_t band, const doub
     }
 }
 
-}  // namespace
-
 void add_polarisation(Delivery& d) {
   const CaptureResult& r = d.result;
-  const size_t q = channel_of(d.sensor, "stokes_q"), u = channel_of(d.sensor, "stokes_u"),
-               lost = channel_of(d.sensor, "depolarised");
+  const auto channels = d.sensor.channels();
+  const size_t q = channel_of(channels, "stokes_q"), u = channel_of(channels, "stokes_u"),
+               lost = channel_of(channels, "depolarised");
   if (q >= r.channels || u >= r.channels || r.bins != 1 || r.stokes_covariance.empty()) return;
   Product product{"polarisation", "1, or degrees of angles", false, {}, {}};
   for (const Band& b : d.bands)
     for (const char* what :
          {" dolp", " dolp_error", " dolp_debiased", " aolp", " aolp_error", " aolp_undefined", " depolarised_share"})
       product.bands.push_back(b.name + what);
+  Product together{"covariance", "(W/(m2 sr um))^2", false, {}, {}};
+  for (const Band& b : d.bands)
+    for (const char* what : {" II", " IQ", " IU", " QQ", " QU", " UU"}) together.bands.push_back(b.name + what);
   for (size_t i = 0; i < r.problems(); ++i)
     for (size_t b = 0; b < r.bands; ++b) {
       const auto at = [&](size_t channel) { return (i * r.channels + channel) * r.bands + b; };
@@ -121,12 +119,14 @@ void add_polarisation(Delivery& d) {
       const double error[3] = {r.standard_error[at(0)], r.standard_error[at(q)], r.standard_error[at(u)]};
       double C[6];
       covariances(r, i, b, error, C);
+      together.values.insert(together.values.end(), std::begin(C), std::end(C));
       const LinearPolarisation p = linear_polarisation(S, C);
       const double share = lost < r.channels && S[0] > 0 ? r.radiance[at(lost)] / S[0] : 0;
       product.values.insert(product.values.end(), {p.degree, p.degree_error, p.debiased, p.angle, p.angle_error,
                                                    p.undefined ? 1.0 : 0.0, share});
     }
   d.products.push_back(std::move(product));
+  d.products.push_back(std::move(together));
 }
 
 std::string text_of(const Polarimetry& how) {

@@ -46,6 +46,7 @@ class Platform final : public Sensor, public SeesPoints {
   std::span<const Task> tasks() const override { return spec_.tasks; }
   std::span<const std::string> truth() const override { return spec_.truth; }
   std::span<const std::string> channels() const override { return spec_.channels; }
+  const Polarimetry* polarimetry() const override { return spec_.polarimetry ? &*spec_.polarimetry : nullptr; }
   ImageWishes wishes(const Capture& capture) const override {
     return spec_.arrays[spec_.segments[capture.state].array].wishes;
   }
@@ -136,8 +137,11 @@ class Platform final : public Sensor, public SeesPoints {
     const FocalArray& array = spec_.arrays[part.array];
     const Segment& segment = spec_.segments[part.segment];
     Piece piece;
-    if (const auto prepared = prepared_.extract(key_of(spec_.tasks[result.task].captures[result.capture])))
-      piece.points = std::move(prepared.mapped().points);
+    const Capture& capture = spec_.tasks[result.task].captures[result.capture];
+    const Instrument& instrument = spec_.instruments[array.instrument];
+    turn_upright(
+        spec_, [&](double t) { return pose(instrument, prepared_for(capture), t); }, result);
+    if (const auto prepared = prepared_.extract(key_of(capture))) piece.points = std::move(prepared.mapped().points);
     piece.products = detect(spec_, segment, result, part.event);
     piece.capture = result.capture;
     piece.result = std::move(result);
@@ -212,6 +216,7 @@ class Platform final : public Sensor, public SeesPoints {
     Delivery d{
         *this, rows_[task][capture], std::move(first.result), std::move(bands), std::move(first.products), {}, {}, {}};
     d.columns = std::move(columns);
+    if (spec_.polarimetry) add_polarisation(d);
     for (const auto& [segment, piece] : pieces)
       if (piece.points)
         d.texts.push_back({spec_.tasks[task].captures[piece.capture].name + "_stars.csv",
@@ -221,6 +226,7 @@ class Platform final : public Sensor, public SeesPoints {
     if (const auto& psf = spec_.segments[array.segments[0]].psf; psf && psf->cut() > 0)
       spread = strf("; point spread cut where %.2f %% of the light remain", 100 * psf->cut());
     spread += noise_text(spec_, spec_.segments[array.segments[0]]);
+    if (spec_.polarimetry) spread += "; " + text_of(*spec_.polarimetry);
     d.description = who + strf(", %.9g to %.9g s", c.window.begin, c.window.end) + spread;
     if (array.scans()) {
       const std::vector<std::string>& lines = lines_of(part.array);
@@ -269,6 +275,7 @@ class Platform final : public Sensor, public SeesPoints {
     joined.paths = of(&CaptureResult::paths);
     joined.quality = of(&CaptureResult::quality);
     joined.truth = of(&CaptureResult::truth);
+    if (!joined.stokes_covariance.empty()) joined.stokes_covariance = of(&CaptureResult::stokes_covariance);
     joined.columns = all;
     for (size_t p = 0; p < into.products.size(); ++p) {
       std::vector<const std::vector<double>*> parts;

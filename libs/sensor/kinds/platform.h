@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "sensor/analyser.h"
 #include "sensor/detectors/detectors.h"
 #include "sensor/lens.h"
 #include "sensor/mount.h"
+#include "sensor/polarimetry.h"
 #include "sensor/psf.h"
 #include "sensor/sensors.h"
 
@@ -54,7 +56,9 @@ struct FocalArray {
   Readout readout;
   uint32_t time_bins = 1;  // parts of the exposure, each with a picture of its own
   std::optional<DetectorSpec> detector;
-  std::shared_ptr<const ArrayDetector> reader;  // null without counts
+  std::shared_ptr<const ArrayDetector> reader;   // null without counts
+  std::optional<Analysers> analysers;            // before its detectors
+  std::vector<std::vector<std::string>> mosaic;  // [row][column]: the band that a detector counts; empty = all bands
   ImageWishes wishes;
   size_t instrument = 0;
   std::vector<size_t> segments;
@@ -103,6 +107,7 @@ struct PlatformSpec {
   std::vector<std::vector<Part>> parts;  // [task][capture]
   std::vector<std::string> truth, channels;
   ImageWishes wishes;  // of arrays that do not say
+  std::optional<Polarimetry> polarimetry;
 };
 
 // platform_read.cpp. Error, located, for anything wrong, motion that does not cover the tasks included.
@@ -130,6 +135,22 @@ struct Exposed {
 Exposed exposed(const PlatformSpec& spec, const Capture& capture, size_t problem);
 // For headers: when each line of a task's picture is taken, and where on the compass the picture's axes point.
 std::string lines_text(const PlatformSpec& spec, size_t task, size_t array, const SensorContext& context);
+
+// platform_stokes.cpp. Before the arrays: keys stokes and stokes_frame. After the captures are planned: the frame in
+// which paths bring Stokes vectors, `up` of `image` being one direction for all instruments and times, along which none
+// of them looks. Error, located: instruments that look everywhere.
+void read_stokes(const Params& params, PlatformSpec& spec);
+void choose_frame(const Params& params, PlatformSpec& spec);
+// Keys analyser and mosaic of an array whose bands are known.
+void read_array_analysers(const Params& p, const PlatformSpec& spec, FocalArray& array);
+void check_mosaic(const Params& p, const FocalArray& array, std::span<const Band> bands);
+// Turns Q and U of every pixel, with errors and covariances, into the frame of the picture as it lies while the pixel's
+// middle is exposed.
+void turn_upright(const PlatformSpec& spec, const std::function<Pose(double)>& pose, CaptureResult& result);
+// The share of I, Q, U and V that each train passes on to a segment's photons, [band][train].
+std::vector<std::vector<Stokes>> analyser_rows(const Segment& segment, const Analysers& analysers);
+// The detectors' band by the mosaic, of a product of all bands.
+Product mosaic_of(const PlatformSpec& spec, const Segment& segment, const CaptureResult& result, const Product& all);
 
 // platform_products.cpp: electrons and counts of a result whose bands are a segment's; strips the photon bands.
 // read_out: tells this event from all others.

@@ -1,5 +1,6 @@
 // What detectors make of radiance: electrons and digital counts beside it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sensor/kinds/platform.h"
@@ -19,6 +20,10 @@ void keep_bands(CaptureResult& r, size_t keep) {
   };
   cut(r.radiance);
   cut(r.standard_error);
+  for (size_t i = 0; i * r.bands * 6 < r.stokes_covariance.size(); ++i)
+    std::copy_n(r.stokes_covariance.begin() + static_cast<long>(i * r.bands * 6), keep * 6,
+                r.stokes_covariance.begin() + static_cast<long>(i * keep * 6));
+  r.stokes_covariance.resize(r.stokes_covariance.size() / r.bands * keep);
   cut(r.error_correlation);  // its first rows are the ones to keep
   r.error_correlation.resize(keep * keep);
   r.bands = keep;
@@ -123,6 +128,45 @@ ArrayLight light_of(const PlatformSpec& spec, const Segment& segment, const Capt
   return light;
 }
 
+// Radiance behind the analysers of an array, in the bands that count photons; all of it where there are none.
+class SeenRadiance {
+ public:
+  SeenRadiance(const PlatformSpec& spec, const Segment& segment, const CaptureResult& result)
+      : result_(result), bands_(segment.radiance_bands) {
+    const auto& analysers = spec.arrays[segment.array].analysers;
+    if (!analysers) return;
+    analysers_ = &*analysers;
+    rows_ = analyser_rows(segment, *analysers);
+    for (size_t c = 0; c < 3; ++c)
+      channel_[c + 1] = channel_of(spec.channels, std::array{"stokes_q", "stokes_u", "stokes_v"}[c]);
+  }
+  double of(size_t problem, size_t band, const Exposed& from, uint64_t frame) const {
+    if (!analysers_) return mean(problem, 0, band);
+    const Stokes& row = rows_[band][analysers_->of(from.column, from.row, frame)];
+    double sum = 0;
+    for (size_t c = 0; c < 4; ++c)
+      if (channel_[c] < result_.channels) sum += row[c] * mean(problem, channel_[c], band);
+    return std::max(sum, 0.0);  // noise of paths, where next to nothing passes
+  }
+
+ private:
+  // Over the parts of the exposure.
+  double mean(size_t problem, size_t channel, size_t band) const {
+    double sum = 0;
+    for (size_t t = 0; t < result_.bins; ++t)
+      sum +=
+          result_
+              .radiance[((problem * result_.channels + channel) * result_.bins + t) * result_.bands + bands_ + band] /
+          static_cast<double>(result_.bins);
+    return sum;
+  }
+  const CaptureResult& result_;
+  size_t bands_;
+  const Analysers* analysers_ = nullptr;
+  std::vector<std::vector<Stokes>> rows_;
+  std::array<size_t, 4> channel_{};
+};
+
 void add_kelvin(const std::vector<BandThermometer>& thermometers, const DetectorSpec& d, double exposure,
                 std::span<const double> per_radiance, std::vector<Product>& products) {
   const std::vector<double>& dn = products.back().values;
@@ -149,6 +193,7 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
   std::vector<BandThermometer> thermometers;
   std::vector<double> per_radiance(n * bands);
   const Capture& capture = spec.tasks[result.task].captures[result.capture];
+  const SeenRadiance seen(spec, segment, result);
   ArrayLight light;
   if (array.reader) light = light_of(spec, segment, result, read_out);
   for (size_t b = 0; b < bands; ++b) {
@@ -156,10 +201,7 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
       const Exposed from = exposed(spec, capture, i);
       const DetectorPlace place = place_of(array, from.column, from.row, 0.5, 0.5);
       // The photon bands follow the listed ones; every band has detectors of its own.
-      double radiance = 0;
-      for (size_t t = 0; t < result.bins; ++t)
-        radiance += result.radiance[(i * result.channels * result.bins + t) * result.bands + bands + b] /
-                    static_cast<double>(result.bins);
+      const double radiance = seen.of(i, b, from, read_out);
       const double factor = electrons_at(spec, array, place, axis);
       per_radiance[i * bands + b] = factor * segment.electrons[b];
       const double signal = radiance * (factor * segment.electrons[b]);
@@ -184,6 +226,7 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
       if (reading.clipped[i]) result.quality[i] |= quality_clipped;
     if (d.background > 0) thermometers.emplace_back(segment.bands[bands + b]);
   }
+  if (!array.mosaic.empty() && !dn.values.empty()) out.push_back(mosaic_of(spec, segment, result, dn));
   drop_truth_of(result, segment.bands, bands);
   keep_bands(result, bands);
   if (!dn.values.empty()) out.push_back(std::move(dn));

@@ -118,6 +118,7 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
   s.radiance_bands = s.bands.size();
   s.convergence = read_convergence(p);
   s.band_targets = read_band_targets(p, s.bands, s.convergence);
+  check_mosaic(p, array, s.bands);
   if (!array.segments.empty() && s.radiance_bands != spec.segments[array.segments[0]].radiance_bands)
     throw bands.error("the chips of an array have the same number of bands");
   spec.states.push_back(read_state(p, s.bands));
@@ -208,6 +209,7 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
     throw p.at("time_bins").error("time bins need a global read-out");
   if (auto made = read_detector(p, context))
     array.detector = std::move(made->spec), array.reader = std::move(made->reader);
+  read_array_analysers(p, spec, array);
   check_parts(array, p);
   const Lens& lens = spec.instruments[instrument].lens;
   if (array.detector && !(lens.aperture > 0))
@@ -314,6 +316,7 @@ PlatformSpec read_platform(const Params& params, const SensorContext& context) {
   spec.truth = read_truth(params);
   spec.wishes = read_wishes(params, spec.truth);
   spec.channels = read_channels(params);
+  read_stokes(params, spec);
   read_carrier(params, {}, spec, context, seed, 0);
   for (const std::string& key : spec.instruments.empty() ? params.keys() : std::vector<std::string>{})
     if (const std::string near = nearest_name(key, std::vector<std::string>{"attachments", "instruments"});
@@ -330,6 +333,7 @@ PlatformSpec read_platform(const Params& params, const SensorContext& context) {
     a.image = image;
   }
   plan_captures(spec, params, context);
+  choose_frame(params, spec);
   return spec;
 }
 
