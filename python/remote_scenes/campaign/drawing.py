@@ -98,7 +98,7 @@ class Drawer:
         if self.campaign.groups:
             more = ("material",) if "panoptic" in self.campaign.formats else ()
             for sensor in simulation["sensors"]:
-                if sensor.get("kind") not in ("point", "goniometer", "rami"):
+                if sensor.get("kind") not in ("point", "goniometer", "rami", "lidar"):
                     wanted = [*(sensor.get("truth") or []), *_TRUTH, *(_OF_SUN if simulation.get("sun") else ()), *more]
                     sensor["truth"] = list(dict.fromkeys(wanted))
         simulation["sensors"] = self.campaign.frames.expanded(simulation["sensors"])

@@ -101,6 +101,7 @@ class Maker:
             for e, kind in ((e, kind) for e in endings for kind in (".img", ".img.hdr", ".tif")):
                 if (work / "out" / f"{name}{e}{kind}").exists():
                     os.replace(work / "out" / f"{name}{e}{kind}", new / f"{own}{e}{kind}")
+        _keep_pulses(drawn, work / "out", new, ending)
         return images, messages, datasets
 
     def _seen(self, name: str, own: str, dataset: xr.Dataset, drawn: Drawn, new: Path) -> dict[str, Any]:
@@ -135,6 +136,15 @@ class Maker:
                 write_pfm(new / f"{own}_depth.pfm", depth(camera, places, distance))
             if later:
                 write_flo(new / f"{own}_flow.flo", flow(camera, later, places, tag, things.tags if things else (), drawn.placed))
+
+
+def _keep_pulses(drawn: Drawn, out: Path, new: Path, ending: str) -> None:
+    """What laser radars have made: responses, and the folder of what detectors make of them. ending: of the names of what is kept."""
+    for name in (name_of(s) for s in drawn.simulation["sensors"] if s.get("kind") == "lidar"):
+        for made, kept in ((f"{name}_response.h5", f"{name}{ending}_response.h5"), (name, f"{name}{ending}")):
+            if (out / made).exists():
+                os.replace(out / made, new / kept)
+
 
 def _camera(name: str, drawn: Drawn) -> Camera | None:
     """The geometry of the sensor whose image has this name."""

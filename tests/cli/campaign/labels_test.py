@@ -5,8 +5,8 @@ import unittest
 import numpy as np
 
 import remote_scenes as rs
-from kit import CAMPAIGN, SCENE, Boxes, Case
-from remote_scenes.campaign import read_campaign
+from kit import CAMPAIGN, SCENE, SIMULATION, Boxes, Case
+from remote_scenes.campaign import read_campaign, run
 from remote_scenes.campaign.boxes import smallest
 from remote_scenes.campaign.kitti import write_kitti
 from remote_scenes.campaign.label_files import write_coco
@@ -396,6 +396,32 @@ class Shapes(unittest.TestCase):
             self.assertAlmostEqual(np.linalg.norm(box[0] - box[1]) * np.linalg.norm(box[1] - box[2]), 16)
             for corner in np.array([[-4, -1], [4, -1], [4, 1], [-4, 1]]) @ turn.T:
                 self.assertLess(np.linalg.norm(box - corner, axis=1).min(), 1e-9)
+
+
+class LaserRadars(Case):
+    def test_pulses_stand_beside_images(self):
+        """A laser radar has no truth, and its responses and points are kept with the sample."""
+        radar = """\
+  - kind: lidar
+    name: als
+    position_m: [0, 0, 100]
+    look_at_m: [0, 0, 0]
+    tasks: [{start: 0, pulses: 2}]
+    laser: {wavelength_um: 0.65, pulse_energy_j: 1.0e-5, rate_hz: 200, pulse: {kind: gaussian, fwhm_ns: 4}, beam: {kind: gaussian, full_angle_1_e2_mrad: 0.5}}
+    receiver: {aperture_mm: 100, field_of_view_mrad: 1.5, filter_nm: 1}
+    gate: {start_m: 90, stop_m: 105, bin_ns: 1}
+    orders: 1
+    paths: 4
+    detectors: [{kind: linear, name: points, quantum_efficiency: 0.8, receiver_fwhm_ns: 1, returns: {by: gaussian, threshold_e_per_ns: 100}}]
+    output: [csv]
+"""
+        run(self.write(CAMPAIGN.replace("samples: 5", "samples: 1"), simulation=SIMULATION + radar), self.folder / "set", workers=0)
+        sample = self.folder / "set/samples/000000"
+        record = json.loads((sample / "sample.json").read_text())
+        self.assertEqual([image["name"] for image in record["images"]], ["chip"])
+        self.assertGreater(len(record["images"][0]["labels"]), 0)
+        self.assertEqual(rs.open_response(sample / "als_response.h5").sizes["pulse"], 2)
+        self.assertTrue(any((sample / "als").iterdir()))
 
 
 if __name__ == "__main__":
