@@ -247,6 +247,9 @@ bool LidarJobs::run(Job& job, const std::shared_ptr<const Scene>& scene, const s
             i.name.c_str(), human_count(static_cast<double>(r.pulses)).c_str(),
             human_count(static_cast<double>(r.paths)).c_str(), r.photons, r.outside,
             r.laser_first ? "laser" : "receiver"));
+  if (r.smooth)
+    note("laser radar '" + i.name +
+         "': light that meets smooth surfaces alone (corner cubes, mirrors, still water straight down) is left out");
   return true;
 }
 
@@ -296,7 +299,7 @@ Json LidarJobs::log() const {
     j.set("photons", r.photons), j.set("photons_outside_of_the_gate", r.outside), j.set("truncated", r.truncated);
     j.set("polarisation_not_known", r.unknown_polarisation);
     j.set("paths_begin_at", r.laser_first ? "laser" : "receiver"), j.set("passive_light", r.passive),
-        j.set("leaves_passed_once", r.hot_spot);
+        j.set("leaves_passed_once", r.hot_spot), j.set("smooth_surfaces_alone_left_out", r.smooth);
     j.set("range_bins", uint64_t{job->head.bins}), j.set("bin_ns", job->head.bin * 1e9);
     j.set("group_index", job->head.group_index), j.set("detected", job->detect != nullptr);
     j.set("seconds", job->seconds);

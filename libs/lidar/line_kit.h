@@ -11,9 +11,14 @@ namespace suite {
 
 class LineKit {
  public:
+  struct Line {
+    double wavelength_um, width_um;
+    double filter_um;  // full width of what passive light comes through
+  };
   // Keeps a reference to the tracer. passive: resolved; time: s, at which an even ground under real air is looked at.
-  // Temperatures that follow from loads do not glow. Error: what cannot be baked for the wavelength.
-  LineKit(const Tracer& tracer, const SourceSpecs& passive, double wavelength_um, double width_um, TimeSpan window);
+  // Lights have their mean over the filter; those that real air is given beams of, the air and all matter are those of
+  // the line. Temperatures that follow from loads do not glow. Error: what cannot be baked for the wavelength.
+  LineKit(const Tracer& tracer, const SourceSpecs& passive, const Line& line, TimeSpan window);
 
   const Optics optics;
   const Surface surface;
@@ -25,10 +30,11 @@ class LineKit {
   // Whether a medium (number of Optics::media()) is leaves.
   bool leaves(size_t medium) const;
   bool any_leaves() const;
+  // Whether a surface turns light like a mirror or a pane.
+  bool any_smooth() const;
 
  private:
-  static SpectralState state_of(double wavelength_um, double width_um);
-  Environment bake(const Tracer& tracer, SourceSpecs passive, double time) const;
+  Environment bake(const Tracer& tracer, SourceSpecs passive, const Line& line, double time) const;
 };
 
 }  // namespace suite

@@ -141,7 +141,9 @@ void Tracing::bake(double wavelength_um) {
   if (made) return;
   if (kits_.size() > kMostLines)
     throw Error(strf("lidar '%s' has pulses of more than %zu wavelengths", plan_.instrument.name.c_str(), kMostLines));
-  made = std::make_unique<LineKit>(tracer_, passive_, wavelength_um, plan_.instrument.laser.width_um, window_);
+  const LidarInstrument& i = plan_.instrument;
+  made = std::make_unique<LineKit>(tracer_, passive_,
+                                   LineKit::Line{wavelength_um, i.laser.width_um, i.receiver.filter_um}, window_);
 }
 
 void Tracing::trace(Piece& piece) {
@@ -201,7 +203,8 @@ void Tracing::run(uint64_t first, uint64_t last, ResponseSink& sink, PulseReport
     at = end;
   }
   report.laser_first = plan_.laser_first;
-  for (const auto& [um, line] : kits_) report.passive |= line->shines(), report.hot_spot |= line->any_leaves();
+  for (const auto& [um, line] : kits_)
+    report.passive |= line->shines(), report.hot_spot |= line->any_leaves(), report.smooth |= line->any_smooth();
   if (report.met > 0) report.unknown_polarisation /= report.met;
   if (report.paths > 0) report.truncated /= static_cast<double>(report.paths);
 }

@@ -56,6 +56,7 @@ struct PulseReport {
   double truncated = 0;      // share of the light that was cut at the last order, at most
   bool laser_first = false;  // where paths began
   bool passive = false;      // there is light in bin 0
+  bool smooth = false;       // smooth surfaces are there: light that meets nothing else (corner cubes) is left out
   bool hot_spot = false;     // leaves that fill space were passed once by light scattered once (first_scattering.h)
 };
 

@@ -80,6 +80,14 @@ inline std::array<double, 4> hashed(const SampleStream& stream, uint32_t sample,
           stream.hashed(sample, from + 3)};
 }
 
+// Whether a path survives an event. Numbers of events that are kSpan apart differ: who has survived the first would
+// survive the second for certain.
+inline double of_roulette(const SampleStream& stream, uint32_t sample, uint32_t event) {
+  constexpr uint32_t kSpan = kStride / 16;
+  if (event < kSpan) return stream.hashed(sample, roulette(event));
+  return SampleStream(hash_of(stream.key(), 0x726f756c65747465ull, event / kSpan), 0).hashed(sample, roulette(event));
+}
+
 // What a node needs numbers for. own(i): of the i-th light that has a block of its own.
 struct Use {
   uint32_t which;

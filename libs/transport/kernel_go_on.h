@@ -188,7 +188,7 @@ double PathKernel<Wave>::survives(uint32_t p, double brightest) {
   Path& path = wave_.paths[p];
   const double alive = Estimator::survival(brightest, path.order(), wave_.options.roulette_after);
   if (alive == 1) return 1;
-  if (path.stream.hashed(path.sample, dimensions::roulette(path.order() - 1)) >= alive) {
+  if (dimensions::of_roulette(path.stream, path.sample, path.order() - 1) >= alive) {
     wave_.records[p].end = PathEnd::roulette;
     return 0;
   }

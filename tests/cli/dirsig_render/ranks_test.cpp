@@ -124,6 +124,18 @@ TEST_F(Ranks, started_unlike_are_reported) {
   EXPECT_THAT(r.err, AllOf(HasSubstr("was started with options that cannot be"), HasSubstr("[DR903]")));
 }
 
+// A laser has one place, and its pulses run in one process.
+TEST_F(Ranks, refuse_laser_radars) {
+  write_file(*folder_ / "lidar.yaml",
+             std::string_view(std::string(kDay) +
+                              "  - {kind: lidar, name: als, position_m: [0, 0, 100], look_at_m: [0, 0, 0], tasks: "
+                              "[{start: 0, pulses: 2}],\n     laser: {wavelength_um: 0.55, pulse_energy_j: 1.0e-5, "
+                              "rate_hz: 10, beam: {kind: gaussian, full_angle_1_e2_mrad: 1}},\n     receiver: "
+                              "{aperture_mm: 100, field_of_view_mrad: 2}, gate: {start_m: 90, stop_m: 110}}\n"));
+  refused(ranks(2, SUITE_BIN_DIR "/dirsig-render lidar.yaml -o never"), 2,
+          "laser radars run in one process: start it without mpirun");
+}
+
 TEST_F(Ranks, go_on_and_add_paths) {
   std::filesystem::copy(*folder_ / "whole", *folder_ / "more");
   render(2, "sim.yaml -o more --more 16 -q -j 1");

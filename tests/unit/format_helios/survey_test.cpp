@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/files.h"
@@ -166,21 +167,28 @@ TEST(HeliosSurvey, Conic) {
       place_of_plane);
 }
 
-// Snell's law at each face, with the normals of that program's prisms.
+// Snell's law at each face, with the normals of that program's prisms: the first one's second face is tilted (its angle
+// is below 0 degrees), and the other's first.
+struct Prism {
+  double rotation, wedge_deg;  // Hz
+};
+Vec3 through_prisms(Vec3 d, const Prism& first, const Prism& second, double t) {
+  const auto face = [](Vec3 in, Vec3 normal, double ratio) {
+    const double c = -dot(in, normal);
+    return normalized(in * ratio + normal * (ratio * c - std::sqrt(1 - ratio * ratio * (1 - c * c))));
+  };
+  const double a1 = 2 * kPi * first.rotation * t, a2 = 2 * kPi * second.rotation * t, n = 1.5095;
+  const double w1 = first.wedge_deg * kDegree, w2 = second.wedge_deg * kDegree;
+  d = face(normalized(d), {0, -1, 0}, 1 / n);
+  d = face(d, {-std::sin(a1) * std::sin(w1), -std::cos(w1), -std::cos(a1) * std::sin(w1)}, n);
+  d = face(d, {std::sin(a2) * std::sin(w2), -std::cos(w2), std::cos(a2) * std::sin(w2)}, 1 / n);
+  return face(d, {0, -1, 0}, n);
+}
+
 TEST(HeliosSurvey, Risley) {
   const auto all = instruments(parse(survey("prisms", "plane", "")));
   ASSERT_EQ(all.size(), 2u);
-  const auto through = [](Vec3 d, double t) {
-    const auto face = [](Vec3 in, Vec3 normal, double ratio) {
-      const double c = -dot(in, normal);
-      return normalized(in * ratio + normal * (ratio * c - std::sqrt(1 - ratio * ratio * (1 - c * c))));
-    };
-    const double a1 = 2 * kPi * -77.7 * t, a2 = 2 * kPi * 121.5 * t, w1 = 29.7 * kDegree, w2 = 18 * kDegree, n = 1.5095;
-    d = face(normalized(d), {0, -1, 0}, 1 / n);  // below 0 degrees: the second face is tilted
-    d = face(d, {-std::sin(a1) * std::sin(w1), -std::cos(w1), -std::cos(a1) * std::sin(w1)}, n);
-    d = face(d, {std::sin(a2) * std::sin(w2), -std::cos(w2), std::cos(a2) * std::sin(w2)}, 1 / n);
-    return face(d, {0, -1, 0}, n);
-  };
+  const auto through = [](Vec3 d, double t) { return through_prisms(d, {-77.7, 29.7}, {121.5, 18}, t); };
   expect_ranges(
       all[0],
       [&](double t) {
@@ -251,6 +259,87 @@ TEST(HeliosSurvey, PublicScanners) {
     });
   }
   EXPECT_EQ(read, 32u);
+}
+
+// A yard of a plane, three boxes and a tree: a crown of a sphere on a trunk that is a box. m, along a ray.
+double range_in_yard(Vec3 from, Vec3 to) {
+  double near = to.z < 0 ? -from.z / to.z : 1e9;
+  const std::array<Vec3, 2> boxes[] = {{Vec3{-9.85, -15.2, 0}, {-9.6, -14.8, 0.3}},
+                                       {Vec3{8, 20, 0}, {14, 24, 5}},
+                                       {Vec3{-12, 20, 0}, {-9, 27, 6}},
+                                       {Vec3{-6.2, 30.8, 0}, {-5.8, 31.2, 4}}};
+  for (const auto& [low, high] : boxes) {
+    double in = 0, out = 1e9;
+    for (int k = 0; k < 3; ++k) {
+      const double a = (low[k] - from[k]) / to[k], b = (high[k] - from[k]) / to[k];
+      in = std::max(in, std::min(a, b)), out = std::min(out, std::max(a, b));
+    }
+    if (in < out) near = std::min(near, in);
+  }
+  const Vec3 crown = from - Vec3{-6, 31, 5};
+  const double b = dot(crown, to), inside = b * b - (dot(crown, crown) - 4);
+  if (inside > 0 && -b - std::sqrt(inside) > 0) near = std::min(near, -b - std::sqrt(inside));
+  return near;
+}
+
+// Of a leg with 1e5 pulses a second: where beams leave from and to by that program's description, t s after its begin.
+struct Leg {
+  std::function<Vec3(double t)> direction, origin;
+};
+void expect_yard(const LidarInstrument& lidar, const Leg& leg) {
+  int compared = 0, ground = 0;
+  for (uint64_t i = 0; i < lidar.pulses->size(); i += 97) {
+    const auto p = lidar.pulses->pulse(i);
+    if (!p) continue;
+    const Vec3 from = p->emission.translation, to = p->emission.vector({0, 0, -1});
+    const double t = 1e-5 * static_cast<double>(i), ours = range_in_yard(from, to),
+                 theirs = range_in_yard(leg.origin(t), leg.direction(t));
+    if (ours > 200 && theirs > 200) continue;  // near the horizon
+    EXPECT_NEAR(ours, theirs, 0.01) << "pulse " << i;
+    ++compared, ground += from.z + ours * to.z < 1e-6;
+  }
+  EXPECT_GT(ground, 100);
+  EXPECT_GT(compared - ground, 20) << "boxes and the tree";
+}
+
+// The public surveys over the yard, ranges within 1 cm of a ray cast of the documented deflectors.
+TEST(HeliosSurvey, PublicSurveys) {
+  const char* folder = std::getenv("SUITE_HELIOS");
+  if (!folder) GTEST_SKIP() << "SUITE_HELIOS names no folder with livox_test.xml and tls_arbaro_demo.xml";
+  const auto legs = [&](const std::string& file) {
+    const std::string path = std::string(folder) + "/" + file;
+    return instruments(parse_helios_survey(
+        read_text(path), path,
+        {[&](const std::string& name) {
+           return HeliosSurveyFiles::Named{name, read_text(std::string(folder) + name.substr(name.rfind('/')))};
+         },
+         [](const std::string& scene) { return scene + ".h5"; }}));
+  };
+  // Risley prisms, straight down from 0.7 m, while the platform goes 1 cm to the north-east.
+  const auto livox = legs("livox_test.xml");
+  ASSERT_EQ(livox.size(), 1u);
+  EXPECT_NEAR(static_cast<double>(livox[0].pulses->size()), 1e5 * std::sqrt(2.0), 2);
+  const auto of_platform = [](Vec3 v) { return turn('z', -45 * kDegree, mount_of_plane(v)); };
+  expect_yard(livox[0],
+              {[&](double t) {
+                 return of_platform(through_prisms({0, 1, 0}, {-77.733333333, 29.7}, {121.566666666, 29.7}, t));
+               },
+               [](double t) {
+                 const double on = 0.01 * t / std::sqrt(2.0);
+                 return Vec3{-10.01 + on, -15.01 + on, 0.7};
+               }});
+  // A mirror that turns over 240 degrees with a head that turns on.
+  const auto tls = legs("tls_arbaro_demo.xml");
+  ASSERT_EQ(tls.size(), 2u);
+  const struct { double x, y, start; } stands[] = {{1, 25.5, 100}, {-4, -2.5, -45}};
+  for (size_t k = 0; k < 2; ++k)
+    expect_yard(tls[k], {[&](double t) {
+                           const double x = 120 * t + 0.5, a = (-120 + 240 * (x - std::floor(x))) * kDegree;
+                           return turn('z', (stands[k].start + 10 * t) * kDegree, turn('x', a, {0, 1, 0}));
+                         },
+                         [&](double) {
+                           return Vec3{stands[k].x, stands[k].y, 1.7};
+                         }});
 }
 
 }  // namespace

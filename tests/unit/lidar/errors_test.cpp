@@ -273,7 +273,7 @@ TEST(LidarExtremes, AGateThatStartsInACloud) {
 }
 
 // A corner of smooth glass returns the beam to where it comes from. No point that asks finds such light, which meets
-// nothing but smooth surfaces: it is left out. The pulse has its record.
+// nothing but smooth surfaces: it is left out, and the report says so. The pulse has its record.
 TEST(LidarExtremes, ARetroReflectorIsLeftOut) {
   const double s = 2;
   const auto scene =
@@ -287,9 +287,14 @@ TEST(LidarExtremes, ARetroReflectorIsLeftOut) {
     lidar.start_from = from;
     const Received got = receive(scene, lidar);
     EXPECT_EQ(got.total().photons, 0);
+    EXPECT_TRUE(got.report.smooth);
     ASSERT_EQ(got.blocks.size(), 1u);
     EXPECT_EQ(got.blocks[0].row_count(), 1u);
   }
+  DownLidar lidar(1000);
+  lidar.laser.beam.full_angle_1_e2 = 1e-3;
+  lidar.gate_of(990, 1010, 1e-9);
+  EXPECT_FALSE(receive(plate(0.3), lidar).report.smooth);
 }
 
 TEST(LidarExtremes, AMillionBins) {

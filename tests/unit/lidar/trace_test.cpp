@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
+#include "tests/support/lamps_kit.h"
 #include "tests/support/lidar_kit.h"
 
 namespace suite::test {
@@ -202,6 +203,44 @@ TEST(Trace, PassiveLightStandsInBinZero) {
     const auto dark = got.bin(0);
     EXPECT_NEAR(dark.photons, expected, 4 * dark.error() + 0.01 * expected);
     const double active = 8 * lidar.photons() * 0.4 / kPi / 1e4 * area;
+    EXPECT_NEAR(got.total().photons, active, 0.05 * active);
+  }
+}
+
+// Sun, lamp and a warm plate together: the radiance of the band that the filter passes. Sun and lamp have a line within
+// the filter, but beside the laser's: alone at the laser's wavelength they would be a third weaker.
+TEST(Trace, PassiveLightIsThatOfTheFiltersBand) {
+  const double um = 3.5, filter = 0.02, kelvin = 400, reflectance = 0.4, height = 60;
+  const Curve lines({3, 3.5045, 3.505, 3.5055, 4}, {2, 2, 40, 2, 2}, Outside::hold);
+  const double mean = lines.mean(um - filter / 2, um + filter / 2);
+  EXPECT_NEAR(mean, 2.95, 1e-9);
+  auto scene = plate(reflectance);
+  scene->materials[0].temperature_k = kelvin;
+  SourceSpecs all;
+  all.add(SunSpec{{{0, 0, 1}, 0.00465, lines.scaled(5)}});
+  LampSpec lamp = point_lamp({{0, 0, height}}, 0);
+  lamp.intensity = lines.scaled(9000);
+  all.add(lamp);
+  const double emitted = (1 - reflectance) * planck_band_radiance(um - filter / 2, um + filter / 2, kelvin) / filter,
+               scattered = reflectance / kPi * mean * (5 + 9000 / (height * height));
+  EXPECT_GT(emitted, 0.1 * scattered);
+  EXPECT_LT(emitted, 10 * scattered);
+  for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+    DownLidar lidar(100, 8);
+    lidar.train->like.wavelength_um = um;
+    lidar.laser.beam.full_angle_1_e2 = 2e-3;
+    lidar.receiver.field_of_view = 5e-3, lidar.receiver.aperture = 0.2, lidar.receiver.filter_um = filter;
+    lidar.gate_of(90, 110, 1e-9);
+    lidar.paths = 512;
+    lidar.start_from = from;
+    const Received got = receive(scene, lidar, all);
+    const double solid = 2 * kPi * (1 - std::cos(2.5e-3)), area = kPi * 0.01;
+    const double expected =
+        8 * (emitted + scattered) * solid * area * filter * 1e-9 * um * 1e-6 / (kPlanckConstant * kSpeedOfLight);
+    const auto dark = got.bin(0);
+    EXPECT_NEAR(dark.photons, expected, 4 * dark.error() + 2e-3 * expected);
+    EXPECT_LT(dark.error(), 0.02 * expected);
+    const double active = 8 * lidar.photons() * reflectance / kPi / 1e4 * area;
     EXPECT_NEAR(got.total().photons, active, 0.05 * active);
   }
 }
