@@ -6,6 +6,7 @@
 
 #include "air/phase_grid.h"
 #include "air/stokes_field.h"
+#include "base/error.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "math/falling.h"
@@ -219,9 +220,24 @@ class PolarisedBins {
 
 }  // namespace
 
-PolarisedSource::PolarisedSource(Shape shape)
-    : shape_(std::move(shape)),
-      table_(shape_.beams * shape_.layers * 2 * shape_.cosines.size() * shape_.orders * 3 * shape_.bins) {}
+namespace {
+// Of a shape's table; refuses what is too large for a machine that renders as well.
+size_t values_of(const PolarisedSource::Shape& s) {
+  constexpr double kMost = 2e9;  // bytes
+  const double each = 4.0 * 2 * 3 * static_cast<double>(s.layers * s.cosines.size() * s.orders),
+               many = static_cast<double>(s.beams) * static_cast<double>(s.bins);
+  if (each * many > kMost)
+    throw Error(
+        strf("the polarised light of the air takes %.3g GB: %zu spectral bins times %zu beams, %.0f kB each",
+             each * many / 1e9, s.bins, s.beams, each / 1e3),
+        strf("at most %.0f bins: fewer bands at a time or a larger spectral_error, fewer layers of the profile, or "
+             "`scattering: traced`",
+             kMost / each / static_cast<double>(s.beams)));
+  return static_cast<size_t>(each * many / 4);
+}
+}  // namespace
+
+PolarisedSource::PolarisedSource(Shape shape) : shape_(std::move(shape)), table_(values_of(shape_)) {}
 
 PolarisedSource::Place PolarisedSource::place(double cosine) const {
   const std::vector<double>& all = shape_.cosines;

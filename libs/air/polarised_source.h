@@ -24,6 +24,7 @@ class PolarisedSource {
     size_t layers = 0, bins = 0, beams = 0, orders = 0;
     std::vector<double> cosines;
   };
+  // Error: the table takes more than 2 GB.
   explicit PolarisedSource(Shape shape);
 
   enum Part : size_t { i, q, u };

@@ -34,10 +34,8 @@ std::optional<LightPlace> LidarEnd::draw_place(const LightReceiver&, const std::
 }
 
 LaserEnd::LaserEnd(const LaserBeam& beam, const PulsesAtWork& pulses, size_t bins, const std::optional<Stokes>& stokes)
-    : LidarEnd(pulses), beam_(beam), bins_(bins), stokes_(stokes) {
-  constexpr size_t kSamples = 8192;  // many more than a wave of paths asks for before its light is added
-  given_.resize(stokes ? kSamples : 1);
-  ones_.assign(given_.size() * bins, 1.0f);
+    : LidarEnd(pulses), beam_(beam), stokes_(stokes), ones_(bins, 1.0f) {
+  SUITE_CHECK(!stokes || bins == 1);
 }
 
 PolarFrame frame_about(Dir k, Vec3 x) {
@@ -51,12 +49,14 @@ std::optional<LightSample> LaserEnd::sample(const LightReceiver& at, const std::
   if (!s) return std::nullopt;
   s->scale = beam_.density(pulse->at_laser(-s->direction), s->distance) / (s->distance * s->distance);
   if (!(s->scale > 0)) return std::nullopt;
+  s->spectrum = ones_.data();
   if (stokes_) {
-    last_ = (last_ + 1) % given_.size();
+    if (used_ == given_.size()) given_.emplace_back();
+    Given& given = given_[used_++];
     const Dir way = -s->direction;
-    given_[last_] = frame_rotation(frame_about(way, pulse->laser.vector({1, 0, 0})), meridian_frame(way).e1) * *stokes_;
+    given.stokes = frame_rotation(frame_about(way, pulse->laser.vector({1, 0, 0})), meridian_frame(way).e1) * *stokes_;
+    s->spectrum = &given.one;
   }
-  s->spectrum = &ones_[last_ * bins_];
   return s;
 }
 

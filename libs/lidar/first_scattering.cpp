@@ -248,7 +248,7 @@ void FirstScattering::place(const Ray& ray, Vec3 end_place, const Gate& gate, do
   double light = phase(s, scattering_cosine(-ray.direction, seen->direction)) * seen->scale * left / density;
   if (!(light > 0)) return;
   const Stokes stokes =
-      laser_ ? mueller(s, -ray.direction, seen->direction) * laser_->stokes_of(seen->spectrum) : Stokes{1, 0, 0, 0};
+      laser_ ? mueller(s, -ray.direction, seen->direction) * LaserEnd::stokes_of(seen->spectrum) : Stokes{1, 0, 0, 0};
   if (same) {
     // Both ends near each other, from the ray's on.
     light *= left * std::exp(leaves);

@@ -19,12 +19,6 @@ Mueller sensor_matrix(const PulseAtWork& pulse, Dir direction) {
   return frame_rotation(meridian_frame(way), frame_about(way, pulse.receiver.vector({1, 0, 0})).e1);
 }
 
-// A laser's Stokes vector is that of the straight way to it: none is looked for along bent ones.
-PipelineOptions straight(PipelineOptions options) {
-  options.refracted_sources = options.volume_chains = options.equiangular = false;
-  return options;
-}
-
 }  // namespace
 
 struct PulseRows::Job {
@@ -38,18 +32,19 @@ struct PulseRows::Job {
   std::unique_ptr<SpectralThroughputs> spectral;  // where they do not
   std::unique_ptr<PathTracing> kernel;
   bool passive, active;
+  LaserEnd* laser;       // as Asked's
   bool scatters;         // media scatter its paths: PathRecord::scattered_first is known
   uint32_t waiting = 0;  // started paths
 
   // laser: where paths carry polarisation and look for it.
   struct Asked {
     bool tags, passive, active, polarised;
-    const LaserEnd* laser;
+    LaserEnd* laser;
   };
   Job(const LineKit& kit, Environment lit, const PipelineOptions& method, uint16_t end_, const ReceiverEnd* receiver,
       uint32_t orders, bool without_first, const Asked& asked)
       : environment(std::move(lit)),
-        options(asked.polarised ? straight(method) : method),
+        options(method),
         context{kit.surface, kit.optics, environment, options, asked.tags,
                 false,       true,       false,       nullptr, asked.polarised},
         end(end_),
@@ -57,6 +52,7 @@ struct PulseRows::Job {
         kernel(make(asked)),
         passive(asked.passive),
         active(asked.active),
+        laser(asked.laser),
         scatters(choose_kernel(context).in_media()) {}
 
   std::unique_ptr<PathTracing> make(const Asked& asked) {
@@ -83,6 +79,7 @@ struct PulseRows::Job {
     for (uint32_t p = 0; p < waiting; ++p) report.truncated += kernel->record(p).truncated;
     report.paths += waiting;
     waiting = 0;
+    if (laser) laser->forget();
   }
 };
 
@@ -128,9 +125,6 @@ auto PulseRows::make_job(const End& end, bool passive) -> std::unique_ptr<Job> {
     const KernelContext context{kit_.surface, kit_.optics, lit, method};
     // Smooth interfaces are no orders of their own: a path may pass some more.
     constexpr uint32_t kPasses = 16;
-    if (plan_.polarised && refracts(context))
-      throw Error("polarised lasers and analysers are not followed through smooth surfaces that refract",
-                  "a laser without `stokes` and a receiver without `analysers`, or rough water");
     const uint32_t more = refracts(context) ? kPasses : 0;
     method.max_nodes = static_cast<int>(std::min<uint32_t>(plan_.instrument.orders, 1u << 20) + more);
     method.max_scatterings = plan_.instrument.orders;

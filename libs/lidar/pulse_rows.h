@@ -47,7 +47,7 @@ class PulseRows {
   struct End {
     std::shared_ptr<const Light> light;     // null: passive light alone
     const ReceiverEnd* receiver = nullptr;  // which of both it is
-    const LaserEnd* laser = nullptr;
+    LaserEnd* laser = nullptr;
   };
   std::unique_ptr<Job> make_job(const End& end, bool passive);
   void run(Job& job, const RowRange& range, bool from_laser, PulseReport& report);

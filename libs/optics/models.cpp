@@ -1,6 +1,7 @@
 #include "optics/models.h"
 
 #include "math/share.h"
+#include "optics/models/ground.h"
 #include "optics/models/rows.h"
 
 namespace suite {
@@ -10,12 +11,14 @@ const Registry<ModelRow>& models() {
       "model", "OP101",
       {lambert_row(), oren_nayar_row(), leaf_row(), rpv_row(), ross_li_row(), roujean_row(), ward_row(), ggx_row(),
        mirror_row(), dielectric_row(), ggx_dielectric_row(), priest_germer_row(), beard_maxwell_row(), shell_row(),
-       sqt_row(), sea_row()});
+       sqt_row(), sea_row(), coated_row()});
   return table;
 }
 
 void check_model(ModelSpec& spec, const Where& where) {
-  check_parameters(spec, models().find(spec.model, where).parameters, "model", where);
+  const ModelRow& row = models().find(spec.model, where);
+  check_parameters(spec, row.parameters, "model", where);
+  if (const auto bpdf = spec.texts.find("bpdf"); bpdf != spec.texts.end()) check_bpdf(spec.model, bpdf->second, where);
 }
 
 namespace {

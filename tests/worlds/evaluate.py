@@ -4,7 +4,7 @@ import random
 from dataclasses import asdict, dataclass, field
 
 import judge
-from programs import Refused, cpu_seconds
+from programs import Refused, cpu_seconds, kept
 from relations import SECONDS, relation_of
 from rows import TABLE
 from world import draw_world
@@ -56,7 +56,7 @@ def case_of(world, relation, seed):
     if case:
         case.floor = FLOOR * world.facts["level"]
         case.tolerance = max(case.tolerance, world.facts.get("spectral_error", 0), GROUNDLESS if groundless(world) else 0,
-                             BENT if relation.name == "furnace" and world.rows & {"normal_map", "bump", "mesh_smooth"} else 0)
+                             BENT if "furnace" in relation.traits and world.rows & {"normal_map", "bump", "mesh_smooth"} else 0)
     return case
 
 
@@ -81,7 +81,7 @@ def factor_of(programs, case, folder, seed, fixed, wanted=SECONDS):
         return fixed, None, 0.05
     programs.prepare(case.terms[0][1], os.path.join(folder, "term0"), PILOT)
     before = cpu_seconds()
-    pilot = [programs.render(os.path.join(folder, "term0"), seed * 16)]
+    pilot = [kept(programs.render(os.path.join(folder, "term0"), seed * 16), case.terms[0][1].facts.get("kept"))]
     spent = max(cpu_seconds() - before - START, 0.005)
     factor = min(MOST, int(PILOT * wanted / spent))
     return (PILOT, pilot, spent / PILOT) if factor < 2 * PILOT else (factor, None, spent / PILOT)

@@ -110,7 +110,15 @@ class Programs:
     def pictures(self, world, folder, seeds, paths_factor=1, options=()):
         """-> for each seed {sensor: Picture}; one preparation."""
         self.prepare(world, folder, paths_factor)
-        return [self.render(folder, seed, options) for seed in seeds]
+        return [kept(self.render(folder, seed, options), world.facts.get("kept")) for seed in seeds]
+
+
+def kept(pictures, bands):
+    """Of all pictures the bands [first, last) alone, where there are such."""
+    if bands:
+        for p in pictures.values():
+            p.values, p.errors = p.values[slice(*bands)], p.errors[slice(*bands)]
+    return pictures
 
 
 def read(folder):

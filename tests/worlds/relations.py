@@ -8,6 +8,7 @@ from typing import Callable, Dict, FrozenSet, List, Optional
 
 import change
 import change_sensor
+import change_stokes
 import judge
 import lidar
 import rewrite
@@ -51,24 +52,25 @@ def pixels_of(sensor):
 
 
 class Furnace(dict):
-    """Expected picture of any shape: factor x B."""
+    """Expected picture of any shape: factor x B; behind its bands so many times as many of which nothing is expected."""
 
-    def __init__(self, world):
+    def __init__(self, world, dark=0):
         super().__init__()
-        self.facts = world.facts
+        self.facts, self.dark = world.facts, dark
 
     def __missing__(self, name):
         factors, facts = self.facts["factors"][name], self.facts
         half = facts["width"] / 2
 
         class Band:
-            def __init__(self, center):
-                self.value = band_mean(center - half, center + half, lambda w: planck(w, facts["kelvin"]))
+            def __init__(self, center, scale=1):
+                self.value = scale * band_mean(center - half, center + half, lambda w: planck(w, facts["kelvin"]))
 
             def __getitem__(self, i):
                 return self.value * (factors[i] if isinstance(factors, list) else factors)
 
-        return [Band(facts["wavelength"]), Band(round(facts["wavelength"] * 1.2, 4))]
+        centers = (facts["wavelength"], round(facts["wavelength"] * 1.2, 4))[:facts.get("bands", 1) if self.dark else 2]
+        return [Band(w) for w in centers] + [Band(w, 0) for _ in range(self.dark) for w in centers]
 
 
 def furnace(world, rng):
@@ -165,6 +167,24 @@ def radar_ends(world, rng):
     return Case(terms, note=note, tolerance=LAMP if "camera" in note else judge.TOLERANCE)
 
 
+def stokes_furnace(world, rng):
+    """All at one temperature: every pixel's Stokes vector is (B, 0, 0, 0)."""
+    made = change_stokes.furnace(world)
+    return made and Case([(1, made)], Furnace(world, 3), note="(B, 0, 0, 0)")
+
+
+def stokes_scalar(world, rng):
+    """Where nothing polarises, I is what a camera without polarisation sees."""
+    made = change_stokes.beside_scalar(world)
+    return made and Case([(1, made[0]), (-1, made[1])], note="I and a camera without polarisation")
+
+
+def stokes_roll(world, rng):
+    """A camera's roll turns the angle of polarisation and leaves its degree."""
+    made = change_stokes.rolled(world, rng)
+    return made and Case([(1, made[0]), (made[1], made[2])], note=made[3])
+
+
 LAMP = 5e-4  # a spot lamp is even over angles, a top hat over the plane: 1.5 times the square of 10 mrad at its edge; and wavelengths of a band
 
 
@@ -190,6 +210,9 @@ RELATIONS = {r.name: r for r in (
     Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "moved", "still_world", "no_room", "no_profile")),
     Relation("reciprocity", reciprocity, 2, frozen("reciprocal", "still_world", "no_profile"), seconds=5 * SECONDS),
     Relation("same_bytes", same_bytes, 1, frozen("stars")),
+    Relation("stokes_furnace", stokes_furnace, 2, frozen("furnace", "wants_camera", "no_air"), seconds=2 * SECONDS, quick=False),
+    Relation("stokes_scalar", stokes_scalar, 1, frozen("wants_camera", "stars", "no_air", "no_profile"), quick=False),
+    Relation("stokes_roll", stokes_roll, 1, frozen("wants_camera", "stars", "no_air"), seconds=2 * SECONDS, quick=False),
     Relation("radar", radar, 2, frozen("later"), paths=8, seconds=2 * SECONDS, quick=False),
     Relation("radar_ends", radar_ends, 2, frozen("reciprocal", "still_world", "no_profile"), paths=8, seconds=2 * SECONDS, quick=False),
 )}

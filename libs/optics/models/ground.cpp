@@ -18,6 +18,11 @@ void panels(double a, double b, int count, bool toward_low, std::vector<std::pai
   }
 }
 
+std::string bpdf_text(const ModelSpec& spec) {
+  const auto text = spec.texts.find("bpdf");
+  return text == spec.texts.end() ? std::string() : text->second;
+}
+
 }  // namespace
 
 std::vector<GroundNode> ground_nodes(Dir out) {
@@ -36,6 +41,42 @@ std::vector<GroundNode> ground_nodes(Dir out) {
     }
   for (GroundNode& n : nodes) n.weight *= kPi / sum;
   return nodes;
+}
+
+GroundModel::GroundModel(const ModelSpec& spec) : bpdf_(bpdf_text(spec)) {}
+
+ScatterModel::Polarised GroundModel::mueller(Dir out, Dir in, std::span<Mueller> m) const {
+  if (!bpdf_.any()) return CosineLobe::mueller(out, in, m);
+  if (!same_side(out, in)) return depolarised(m);
+  thread_local std::vector<float> w;
+  w.resize(m.size());
+  eval(out, in, w);
+  const Bpdf::Polarised b = bpdf_.at(out, in);
+  const double most = b.r11 / kPi * std::fabs(in.z);
+  for (size_t i = 0; i < m.size(); ++i) {
+    const double share = w[i] > 0 ? std::min(1.0, most / w[i]) : 0;
+    m[i] = b.matrix * share;
+    m[i](0, 0) = 1;
+  }
+  return {m.size() == 1, 0};
+}
+
+Parameter bpdf_parameter() {
+  return {"bpdf",
+          Parameter::Kind::text,
+          "",
+          "polarised part: `breon cover 0.6`, `maignan c 6.11 ndvi 0.5`, `nadal_breon rho 0.0145 beta 120` or "
+          "`litvinov alpha 0.8 variance 0.146 shadow 1`",
+          0,
+          0,
+          false};
+}
+void check_bpdf(const std::string& model, const std::string& text, const Where& where) {
+  try {
+    (void)Bpdf(text);
+  } catch (const Error& e) {
+    throw Error(where, "model '" + model + "': " + e.message(), e.hint());
+  }
 }
 
 void GroundModel::fill_totals(const char* model, const char* help, const SpectralState& state,

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "optics/models/bpdf.h"
 #include "optics/models/cosine_lobe.h"
 #include "optics/models/directional_table.h"
 
@@ -26,13 +27,16 @@ struct GroundNode {
 };
 std::vector<GroundNode> ground_nodes(Dir out);
 
-// Totals come from a table over the polar angle, integrated when the model is made.
+// Totals come from a table over the polar angle, integrated when the model is made. Polarisation comes from a BPDF
+// where one is given; else nothing is known of it.
 class GroundModel : public CosineLobe {
  public:
+  explicit GroundModel(const ModelSpec& spec);
   void total(Dir out, std::span<float> W) const final {
     if (out.z == 0) return zero(W);
     table_.at(up(out), W);
   }
+  Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const final;
 
  protected:
   // integrate: the totals W of a direction on the upper side. Error, naming the model and what would help, when more
@@ -42,6 +46,11 @@ class GroundModel : public CosineLobe {
 
  private:
   DirectionalTable table_;
+  Bpdf bpdf_;
 };
+
+// The parameter `bpdf` of these models, and what checks it. Error, located at `where`.
+Parameter bpdf_parameter();
+void check_bpdf(const std::string& model, const std::string& text, const Where& where);
 
 }  // namespace suite

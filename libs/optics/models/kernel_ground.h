@@ -14,7 +14,8 @@ template <class Kernels>
 class KernelGround : public GroundModel {
  public:
   KernelGround(const char* model, const ModelSpec& spec, const SpectralState& state)
-      : isotropic_(state.sample(spec.curves.at("isotropic"))),
+      : GroundModel(spec),
+        isotropic_(state.sample(spec.curves.at("isotropic"))),
         volume_(state.sample(spec.curves.at("volume"))),
         geometry_(state.sample(spec.curves.at("geometry"))) {
     uniform_ = same_shares();

@@ -38,19 +38,24 @@ ModelRow ross_li_row() {
            make_model<RossLi>},
           {{"isotropic", P::Kind::curve, "1", "weight of the constant", 0, 1},
            {"volume", P::Kind::curve, "1", "weight of the RossThick kernel", -1, 1},
-           {"geometry", P::Kind::curve, "1", "weight of the LiSparse kernel", -1, 1}},
+           {"geometry", P::Kind::curve, "1", "weight of the LiSparse kernel", -1, 1},
+           bpdf_parameter()},
           true,
           []() -> std::vector<ModelSpec> {
             const Curve level({0.4, 0.65, 0.85, 2.0}, {0.04, 0.06, 0.3, 0.25}, Outside::hold);
             const Curve volume({0.4, 0.65, 0.85, 2.0}, {0.02, 0.03, 0.2, 0.1}, Outside::hold);
             const Curve geometry({0.4, 0.65, 0.85, 2.0}, {0.01, 0.012, 0.03, 0.03}, Outside::hold);
-            return {{"ross_li", {}, {{"isotropic", level}, {"volume", volume}, {"geometry", geometry}}, {}, nullptr},
+            return {{"ross_li",
+                     {},
+                     {{"isotropic", level}, {"volume", volume}, {"geometry", geometry}},
+                     {{"bpdf", "maignan c 6.11 ndvi 0.5"}},
+                     nullptr},
                     {"ross_li",
                      {},
                      {{"isotropic", Curve::constant(0.2)},
                       {"volume", Curve::constant(0.1)},
                       {"geometry", Curve::constant(0.1)}},
-                     {},
+                     {{"bpdf", "breon cover 0.6"}},
                      nullptr}};
           }};
 }

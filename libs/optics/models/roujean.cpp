@@ -37,7 +37,8 @@ ModelRow roujean_row() {
            make_model<Roujean>},
           {{"isotropic", P::Kind::curve, "1", "weight of the constant, k0", 0, 1},
            {"geometry", P::Kind::curve, "1", "weight of the geometric kernel, k1", -1, 1},
-           {"volume", P::Kind::curve, "1", "weight of the volume kernel, k2", -1, 1}},
+           {"volume", P::Kind::curve, "1", "weight of the volume kernel, k2", -1, 1},
+           bpdf_parameter()},
           true,
           []() -> std::vector<ModelSpec> {
             // Bare soil and vegetation in size, red and near infrared.
@@ -49,7 +50,7 @@ ModelRow roujean_row() {
                      {{"isotropic", Curve::constant(0.2)},
                       {"geometry", Curve::constant(0.02)},
                       {"volume", Curve::constant(0.3)}},
-                     {},
+                     {{"bpdf", "litvinov"}},
                      nullptr}};
           }};
 }

@@ -20,5 +20,6 @@ ModelRow shell_row();
 ModelRow leaf_row();
 ModelRow sqt_row();
 ModelRow sea_row();
+ModelRow coated_row();
 
 }  // namespace suite

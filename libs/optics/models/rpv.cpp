@@ -14,7 +14,8 @@ namespace {
 class Rpv final : public GroundModel {
  public:
   Rpv(const ModelSpec& spec, const SpectralState& state)
-      : rho0_(state.sample(spec.curves.at("rho0"))),
+      : GroundModel(spec),
+        rho0_(state.sample(spec.curves.at("rho0"))),
         k_(state.sample(spec.curves.at("k"))),
         asymmetry_(state.sample(spec.curves.at("asymmetry"))),
         rho_c_(state.sample(spec.curves.at("rho_c"))) {
@@ -74,7 +75,8 @@ ModelRow rpv_row() {
       {{"rho0", P::Kind::curve, "1", "overall reflectance level", 0, 1},
        {"k", P::Kind::curve, "1", "below 1 a bowl, above 1 a bell", 0.2, 2},
        {"asymmetry", P::Kind::curve, "1", "negative scatters back to the light, positive forward", -0.9, 0.9},
-       {"rho_c", P::Kind::curve, "1", "hot spot: 1 - rho_c is its height; 1 = none", 0, 1, false, 1}},
+       {"rho_c", P::Kind::curve, "1", "hot spot: 1 - rho_c is its height; 1 = none", 0, 1, false, 1},
+       bpdf_parameter()},
       true,
       []() -> std::vector<ModelSpec> {
         const Curve level({0.4, 0.65, 0.85, 2.0}, {0.02, 0.04, 0.2, 0.15}, Outside::hold);
@@ -84,7 +86,7 @@ ModelRow rpv_row() {
                 {"rpv",
                  {},
                  {{"rho0", Curve::constant(0.1)}, {"k", Curve::constant(1.2)}, {"asymmetry", Curve::constant(0.3)}},
-                 {},
+                 {{"bpdf", "nadal_breon rho 0.0145 beta 120"}},
                  nullptr}};
       }};
 }

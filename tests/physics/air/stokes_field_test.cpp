@@ -253,6 +253,20 @@ UP,0.5,0.8,0.92,0.64,120,0.75167674,0.02236983,0.048267212
   EXPECT_GT(wrong, 100 * kTable);  // a sign of b1
 }
 
+// Light scattered once by a thin layer, sun at 60 degrees, looked at straight down (closed form, depolarisation 0.0279;
+// Hansen & Travis 1974): I/E0 7.369816e-4 for each unit of the albedo, degree 0.573657. An albedo of 1e-5 leaves out
+// all further orders.
+TEST(StokesField, AThinLayerScattersOnce) {
+  constexpr double kAlbedo = 1e-5;
+  const GreekMatrix molecules = GreekMatrix::rayleigh(0.0279);
+  const Slab slab(0.01, kAlbedo, 0.5, 0, molecules);
+  StokesField field(Light::polarised, 16, {1.0});
+  field.solve(slab.problem);
+  const Stokes got = field.radiance(0, 0, Way::up, 0, {});
+  EXPECT_NEAR(got[0], kAlbedo * 7.369816e-4, 1e-5 * kAlbedo * 7.369816e-4);
+  EXPECT_NEAR(std::hypot(got[1], got[2]) / got[0], 0.573657, 1e-5);
+}
+
 const char* folder() { return std::getenv("SUITE_POLARISATION_DATA"); }
 
 TEST(StokesField, AgreesWithAllTablesOfMolecules) {

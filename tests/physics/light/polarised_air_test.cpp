@@ -129,5 +129,13 @@ TEST(PolarisedAir, WaysThroughHazeAreThoseOfTheVectorField) {
   EXPECT_LT(compare(hazy, scalar), 0.005);
 }
 
+// Tables that no machine should be asked for are refused before memory is.
+TEST(PolarisedAir, TablesHaveABound) {
+  const std::vector<double> cosines{-1, 0, 1};
+  EXPECT_NO_THROW(PolarisedSource({50, 10, 2, 3, cosines}));
+  EXPECT_THROW(PolarisedSource({50, 10'000'000, 2, 3, cosines}), Error);
+  EXPECT_THROW(PolarisedSource({50, size_t{1} << 40, 2, 3, cosines}), Error);
+}
+
 }  // namespace
 }  // namespace suite

@@ -1,12 +1,14 @@
 // Polarisation of layers against the tables of the IPRT intercomparison.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <sstream>
 
 #include "formats/reptran/netcdf3.h"
+#include "math/sampling.h"
 #include "tests/support/stokes_kit.h"
 
 namespace suite::test {
@@ -133,6 +135,47 @@ TEST(Stokes, ALayerOfSpheroidsAgreesWithPstar) {
                                }});
   EXPECT_LT(V.error, 0.05);
   EXPECT_NEAR(V.value, 1, kSignificant * V.error);
+}
+
+// V. Natraj, K. Li, Y. Yung, ApJ 691, 2009: layers of molecules over Lambert floors, I, Q and U times pi. 40 of the
+// 14,000 rows. phi: from the sun's azimuth to that of the light; the signs of Q and U are the other ones there. The
+// table is not part of the project.
+TEST(Stokes, RowsOfNatrajAgreeWithPaths) {
+  if (!iprt_folder()) GTEST_SKIP() << "SUITE_POLARISATION_DATA does not name the folder with natraj2009_tau.csv";
+  struct Row {
+    IprtRow row;
+    double depth, ground;
+  };
+  std::vector<Row> rows;
+  std::ifstream in(std::string(iprt_folder()) + "/natraj2009_tau.csv");
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("UP") && !line.starts_with("DN")) continue;
+    const bool up = line[0] == 'U';
+    std::replace(line.begin(), line.end(), ',', ' ');
+    double tau, ground, mu0, mu, phi, I, Q, U;
+    std::istringstream(line.substr(2)) >> tau >> ground >> mu0 >> mu >> phi >> I >> Q >> U;
+    if (mu > 0.999) continue;  // no meridian
+    const double from_zenith = std::acos(mu) / kDegree;
+    rows.push_back({{0,
+                     up ? 1.0 : 0.0,
+                     std::acos(mu0) / kDegree,
+                     0,
+                     up ? 180 - from_zenith : from_zenith,
+                     -phi,
+                     {I / kPi, -Q / kPi, -U / kPi, 0}},
+                    tau,
+                    ground});
+  }
+  ASSERT_GT(rows.size(), 13000u);
+  Pcg32 random(2009);
+  const auto molecules = [](const IprtRow&) { return ModelSpec{"rayleigh", {{"depolarisation", 0}}, {}, {}, nullptr}; };
+  for (int n = 0; n < (long_run() ? 40 : 4); ++n) {
+    const Row& r =
+        rows[std::min(rows.size() - 1, static_cast<size_t>(random.uniform() * static_cast<double>(rows.size())))];
+    SCOPED_TRACE(
+        strf("depth %g, ground %g, sun %g, view %g, %g deg", r.depth, r.ground, r.row.sza, r.row.vza, r.row.vaa));
+    compare({r.row}, {r.depth, 1, r.ground, 17, false, molecules});
+  }
 }
 
 }  // namespace

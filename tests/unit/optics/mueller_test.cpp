@@ -13,6 +13,7 @@
 #include "optics/phase_function.h"
 #include "support/conformance.h"
 #include "support/model_examples.h"
+#include "support/polarisation_page.h"
 
 namespace suite {
 namespace {
@@ -183,12 +184,52 @@ Checked check(const ScatterModel& model, const SpectralState& state, bool flip =
   }
   return worst;
 }
+// How much of its light a model knows the matrix of, in the words of docs/theory/polarisation.md.
+struct Known {
+  double least = 1, most = 0, polarises = 0;
+  void add(double unknown, double column) {
+    least = std::min(least, unknown), most = std::max(most, unknown), polarises = std::max(polarises, column);
+  }
+  const char* name() const {
+    if (least == 1) return "not known";
+    if (most > 1e-12) return "partly";
+    return polarises > 1e-6 ? "matrix" : "depolarises";
+  }
+};
+Known known(const ScatterModel& model, size_t bins) {
+  Pcg32 random(3);
+  std::vector<Mueller> m(bins);
+  std::vector<float> w(bins);
+  Known of;
+  for (int n = 0; n < 100; ++n) {
+    const Dir out = cosine_hemisphere({random.uniform(), random.uniform()});
+    Dir in = cosine_hemisphere({random.uniform(), random.uniform()});
+    if (model.has_delta()) {
+      const auto drawn = model.sample(out, {0.3, 0.4}, random.uniform(), 0);
+      if (!drawn || !drawn->delta) continue;
+      const auto p = model.delta_mueller(out, drawn->lobe, 0, m);
+      of.add(p.unknown, std::fabs(m[0](2, 2)));
+      continue;
+    }
+    if (n % 2) in = normalized(Dir{-out.x, -out.y, out.z} + (in - Dir{0, 0, 1}) * 1e-2);
+    model.eval(out, in, w);
+    if (!(w[0] > 1e-20f) || in.z < 1e-2) continue;
+    const auto p = model.mueller(out, in, m);
+    of.add(p.unknown, std::hypot(m[0](1, 0), m[0](2, 0)));
+  }
+  return of;
+}
 TEST(Mueller, MatricesOfAllModelsExistAndAreReciprocal) {
   const SpectralState state = test::test_state(4);
+  const auto page = test::polarisation_of("Surface models");
+  EXPECT_EQ(test::names_on_page("Surface models"), test::row_names(models()));
   int polarising = 0;
   for (const ModelRow& row : models())
     for (const ModelSpec& spec : test::examples_of(row)) {
       const auto model = baked(spec, state);
+      const std::string of = known(*model, state.size()).name();
+      const auto said = page.find(row.name);
+      EXPECT_TRUE(said != page.end() && said->second.find(of) != std::string::npos) << row.name << " is: " << of;
       const Checked worst = check(*model, state);
       EXPECT_GT(worst.least, -1e-6) << row.name;
       EXPECT_LT(worst.column, 1 + 1e-9) << row.name;
@@ -214,6 +255,27 @@ TEST(Mueller, GlitterIsPolarisedAsItsFacetsAre) {
     EXPECT_LT(of.unknown, 0.05);
     EXPECT_NEAR(m[0](1, 0), (1 - of.unknown) * v[5] / v[4], 1e-6) << v[0] << ' ' << v[1] << ' ' << v[3];
     EXPECT_NEAR(m[0](2, 0), (1 - of.unknown) * v[6] / v[4], 1e-6);
+  }
+}
+
+TEST(Mueller, ThePageSaysWhatPhaseFunctionsDo) {
+  const SpectralState state = test::test_state(2);
+  const auto page = test::polarisation_of("Phase functions");
+  EXPECT_EQ(test::names_on_page("Phase functions"), test::row_names(phases()));
+  std::vector<PlaneBlocks> b(state.size());
+  for (const PhaseRow& row : phases()) {
+    const auto said = page.find(row.name);
+    if (said == page.end()) continue;
+    for (ModelSpec spec : test::examples_of(row)) {
+      check_phase(spec);
+      const auto phase = bake_phase(spec, state);
+      Known of;
+      for (const double c : {-0.9, -0.2, 0.3, 0.9}) {
+        const auto p = phase->polarised(c, b);
+        of.add(p.unknown, std::fabs(b[0].b));
+      }
+      EXPECT_NE(said->second.find(of.name()), std::string::npos) << row.name << ' ' << of.name();
+    }
   }
 }
 
