@@ -23,8 +23,9 @@ AuditSun::AuditSun(const Tracer& tracer, const HeatOptics& optics, const Weather
       surface_(tracer, *optics.sun),
       W_(optics.sun->state().size()),
       w_(W_.size()),
-      p_(optics.sun->state().knots.size()),
-      T_(W_.size()) {}
+      T_(W_.size()),
+      knots_(optics.sun->state().knots.size()),
+      walk_(optics.sun->state()) {}
 
 AuditSun::Light AuditSun::light_at(double t) const {
   const std::vector<double>& moments = weather_.moments;
@@ -95,10 +96,8 @@ double AuditSun::scattered(const Hit& from, double side, double t, const Light& 
   if (!at_.baked || !at_.baked->model) return 0;
   at_.baked->model->total(at_.frame.to_local(ray.direction), W_);
   for (size_t i = 0; i < T_.size(); ++i) T_[i] = (1 - std::min(1.0f, W_[i])) * static_cast<float>(kPi);
-  const size_t knots = p_.size();
-  const int knot = static_cast<int>(numbers.uniform() * static_cast<double>(knots));
-  std::array<double, kMaxKnots> ratios;
-  ratios.fill(1);
+  WalkDensities path;
+  path.start(numbers.uniform(), knots_);
   ray.origin = tracer_.leave(from, ray.direction);
   double sum = 0;
   for (uint32_t n = 0; n < kMostReflections; ++n) {
@@ -107,7 +106,7 @@ double AuditSun::scattered(const Hit& from, double side, double t, const Light& 
     if (!hit.hit()) {
       double share = 0;
       for (size_t i = 0; i < T_.size(); ++i) share += double{T_[i]} * double{weather_.course.sky[i]};
-      return sum + share * outside(ray.direction, light) * mean_ratio(ratios, knots);
+      return sum + share * outside(ray.direction, light) * path.weight(knots_);
     }
     surface_.interact(hit, -ray.direction, at_, t);
     if (!at_.baked || !at_.baked->model) {
@@ -115,20 +114,14 @@ double AuditSun::scattered(const Hit& from, double side, double t, const Light& 
       continue;
     }
     const Dir out = at_.frame.to_local(-ray.direction);
-    if (beam) sum += asked(hit, out, t, light, numbers) * mean_ratio(ratios, knots);
+    if (beam) sum += asked(hit, out, t, light, numbers) * path.weight(knots_);
     const double a = numbers.uniform(), b = numbers.uniform(), c = numbers.uniform();
-    const auto drawn = draw_reflection(*at_.baked->model, out, {a, b, c, 0}, knot, w_, p_);
+    const auto drawn = walk_.draw(*at_.baked->model, out, {a, b, c, 0}, path.knot);
     if (!drawn) return sum;
-    const double own = static_cast<double>(p_[static_cast<size_t>(knot)]);
-    double most = 0;
-    for (size_t i = 0; i < T_.size(); ++i) {
-      T_[i] *= static_cast<float>(static_cast<double>(w_[i]) / own);
-      most = std::max(most, double{T_[i]});
-    }
-    for (size_t k = 0; k < knots; ++k) ratios[k] *= static_cast<double>(p_[k]) / own;
-    const double lives = n < kRouletteFrom ? 1 : std::min(1.0, most * mean_ratio(ratios, knots) / kPi);
-    if (!(most > 0) || !(numbers.uniform() < lives)) return sum;
-    for (float& share : T_) share = static_cast<float>(static_cast<double>(share) / lives);
+    const double most = walk_.take(path, T_);
+    if (!(most > 0)) return sum;
+    const double left = n < kRouletteFrom ? 1 : most * path.weight(knots_) / kPi;
+    if (!SurfaceWalk::survives(T_, left, numbers.uniform())) return sum;
     ray.direction = at_.frame.to_world(drawn->in);
     ray.origin = tracer_.leave(hit, ray.direction);
   }

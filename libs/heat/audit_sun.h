@@ -39,7 +39,9 @@ class AuditSun {
   double ground_albedo_;
   Surface surface_;
   Interaction at_;
-  std::vector<float> W_, w_, p_, T_;
+  std::vector<float> W_, w_, T_;
+  size_t knots_;
+  SurfaceWalk walk_;
   TraceStatistics trace_;
 };
 

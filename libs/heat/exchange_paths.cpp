@@ -40,8 +40,8 @@ class Wave {
     going_.clear(), rays_.clear();
     changing_ = begin < faces_.size() ? elements_.changing() : nullptr;  // of faces it is to be found
     for (size_t row = begin; row < end; ++row) start(static_cast<uint32_t>(row));
-    fly(
-        tracer_, going_, rays_, hits_, trace_,
+    walk(
+        tracer_, going_, rays_, hits_, false, trace_,
         [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); }, [] {});
   }
   uint64_t rays() const { return trace_.rays; }

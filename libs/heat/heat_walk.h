@@ -10,6 +10,7 @@
 #include "math/warps.h"
 #include "optics/scatter_model.h"
 #include "spectral/state.h"
+#include "surface/surface_walk.h"
 #include "trace/tracer.h"
 
 namespace suite {
@@ -31,56 +32,9 @@ inline double time_of_path(std::optional<TimeSpan> window, const SampleStream& n
   return window ? window->begin + numbers.hashed(sample, kPurpose) * (window->end - window->begin) : at_rest;
 }
 
-// Takes paths from surface to surface until all have ended. go_on(path, ray, hit, n) is asked for each at its n-th
-// surface, or where it leaves, and returns false when it has ended; after_stage() is called when all were asked once.
-template <class Path, class GoOn, class AfterStage>
-void fly(const Tracer& tracer, std::vector<Path>& going, std::vector<Ray>& rays, std::vector<Hit>& hits,
-         TraceStatistics& statistics, const GoOn& go_on, const AfterStage& after_stage) {
-  for (uint32_t n = 0; !going.empty(); ++n) {
-    hits.resize(rays.size());
-    tracer.nearest(rays, hits, false, statistics);
-    size_t kept = 0;
-    for (size_t i = 0; i < going.size(); ++i) {
-      Path path = going[i];
-      Ray ray = rays[i];
-      if (!go_on(path, ray, hits[i], n)) continue;
-      going[kept] = path, rays[kept] = ray;
-      ++kept;
-    }
-    going.resize(kept), rays.resize(kept);
-    after_stage();
-  }
-}
-
 // A direction towards a point of the sun's disk, of radius rad; x and y in units of it.
 inline Dir on_disk(const Frame& sun, double x, double y, double radius) {
   return normalized(sun.z + radius * (sun.x * x + sun.y * y));
-}
-
-// Draws how a path goes on, with the first three numbers, and says the weights of all bins and the densities at all
-// knots of what was drawn, of a Dirac lobe or not. Nothing: drawn in vain.
-inline std::optional<ScatterModel::Sample> draw_reflection(const ScatterModel& model, Dir out,
-                                                           const std::array<double, 4>& u, int knot, std::span<float> w,
-                                                           std::span<float> p) {
-  auto drawn = model.sample(out, {u[0], u[1]}, u[2], knot);
-  if (!drawn) return std::nullopt;
-  if (drawn->delta) {
-    model.delta_weight(out, drawn->lobe, knot, w);
-    model.delta_probability(out, drawn->lobe, knot, p);
-  } else {
-    model.eval(out, drawn->in, w);
-    model.pdf(out, drawn->in, p);
-  }
-  if (!(p[static_cast<size_t>(knot)] > 0)) return std::nullopt;
-  return drawn;
-}
-
-// One over the mean density of the knots that could have drawn a path, times that of its own: the balance heuristic.
-// ratios: of the densities at the knots to that at its own.
-inline double mean_ratio(const std::array<double, kMaxKnots>& ratios, size_t knots) {
-  double sum = 0;
-  for (size_t k = 0; k < knots; ++k) sum += ratios[k];
-  return static_cast<double>(knots) / sum;
 }
 
 // A path of one bin of a state of which every bin is a knot, or whose shapes are all alike.

@@ -42,7 +42,7 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       told_(sunny_.size()),
       W_(bins_),
       w_(bins_),
-      p_(knots_),
+      walk_(optics.sun->state()),
       lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {
   if (elements.rests().empty()) return;
   shares_ = interval_shares(elements.rests(), course.moments);

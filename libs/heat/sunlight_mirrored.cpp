@@ -61,9 +61,8 @@ class Follower {
         bins_(optics.sun->state().size()),
         knots_(optics.sun->state().knots.size()),
         W_(bins_),
-        w_(bins_),
         back_(bins_),
-        p_(knots_) {}
+        walk_(optics.sun->state()) {}
 
   // Light of one moment that reaches a place. density: points for a m2 in every block.
   void follow(const MirrorPlaces& places, size_t place, uint32_t moment, double density, std::vector<Deposit>& out) {
@@ -79,8 +78,8 @@ class Follower {
     for (size_t i = 0; i < going_.size(); ++i)
       if (!blocked_[i]) going_[kept] = going_[i], rays_[kept] = rays_[i], ++kept;
     going_.resize(kept), rays_.resize(kept);
-    fly(
-        tracer_, going_, rays_, hits_, trace_,
+    walk(
+        tracer_, going_, rays_, hits_, false, trace_,
         [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); }, [] {});
   }
   uint64_t rays() const { return trace_.rays; }
@@ -91,10 +90,9 @@ class Follower {
   struct Going {
     uint64_t key;  // of the stream of numbers
     uint32_t block, moment, sample, spectrum;
-    int knot;
+    WalkDensities drawn;
     double start;  // m, of the first ray to its mirror
     double power;  // W, at the start, of the bin with most
-    std::array<double, kMaxKnots> ratios;
   };
 
   void begin(const MirrorPlaces& places, const MirrorPlaces::Patch& patch, size_t place, uint32_t moment,
@@ -116,9 +114,8 @@ class Follower {
         if (!(d.z > 0)) continue;
         const double facing = std::fabs(dot(d, hit.normal)), watts = area * facing;
         if (!(watts > 0)) continue;
-        path.knot = std::min(static_cast<int>(u[2] * static_cast<double>(knots_)), static_cast<int>(knots_) - 1);
+        path.drawn.start(u[2], knots_);
         path.spectrum = static_cast<uint32_t>(spectra_.size() / bins_);
-        path.ratios.fill(1);
         path.power = 0;
         for (const float share : course_.beam[moment]) {
           spectra_.push_back(static_cast<float>(watts * double{share}));
@@ -141,40 +138,32 @@ class Follower {
   std::optional<Dir> scatter(Going& path, const ScatterModel& model, Dir out, uint32_t n) {
     const SampleStream numbers(path.key, path.block);
     const std::array<double, 4> u = numbers.draw(path.sample, kDrawBlock + n);
-    const auto drawn = draw_reflection(model, out, u, path.knot, w_, p_);
+    const auto drawn = walk_.draw(model, out, u, path.drawn.knot);
     if (!drawn || (n == 0 && !drawn->delta)) return std::nullopt;
-    if (out.z * drawn->in.z < 0) to_power(model, out, *drawn, path.knot);
-    const double own = static_cast<double>(p_[static_cast<size_t>(path.knot)]);
+    if (out.z * drawn->in.z < 0) to_power(model, out, *drawn, path.drawn.knot);
     const std::span<float> T = throughput(path);
-    double most = 0;
-    for (size_t i = 0; i < bins_; ++i) {
-      T[i] *= static_cast<float>(static_cast<double>(w_[i]) / own);
-      most = std::max(most, double{T[i]});
-    }
-    for (size_t k = 0; k < knots_; ++k) path.ratios[k] *= static_cast<double>(p_[k]) / own;
+    const double most = walk_.take(path.drawn, T);
     if (!(most > 0)) return std::nullopt;
-    const double left = most * mean_ratio(path.ratios, knots_) / path.power;
+    const double left = most * path.drawn.weight(knots_) / path.power;
     if (n >= kMostReflections) {
       unfinished_ += left * path.power;
       return std::nullopt;
     }
-    if (n >= kRouletteFrom && left < 1) {
-      if (!(u[3] < left)) return std::nullopt;
-      for (float& t : T) t = static_cast<float>(static_cast<double>(t) / left);
-    }
+    if (n >= kRouletteFrom && !SurfaceWalk::survives(T, left, u[3])) return std::nullopt;
     return drawn->in;
   }
 
   // Weights of radiance across an interface as weights of power.
   void to_power(const ScatterModel& model, Dir out, const ScatterModel::Sample& drawn, int knot) {
+    const std::span<float> w = walk_.weights();
     if (drawn.delta) {
       model.delta_weight(drawn.in, drawn.lobe, knot, back_);
-      for (size_t i = 0; i < bins_; ++i) w_[i] = std::sqrt(w_[i] * back_[i]);
+      for (size_t i = 0; i < bins_; ++i) w[i] = std::sqrt(w[i] * back_[i]);
       return;
     }
     model.eval(drawn.in, out, back_);
     const auto cosines = static_cast<float>(std::fabs(drawn.in.z / out.z));
-    for (size_t i = 0; i < bins_; ++i) w_[i] = back_[i] * cosines;
+    for (size_t i = 0; i < bins_; ++i) w[i] = back_[i] * cosines;
   }
 
   bool go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
@@ -200,7 +189,7 @@ class Follower {
     const std::span<const float> T = throughput(path);
     double watts = 0;
     for (size_t i = 0; i < bins_; ++i) watts += double{T[i]} * (1 - double{std::min(1.0f, W_[i])});
-    watts *= mean_ratio(path.ratios, knots_);
+    watts *= path.drawn.weight(knots_);
     if (watts > 0) out_->push_back({face, path.block, path.moment, watts});
   }
 
@@ -215,7 +204,8 @@ class Follower {
   Surface surface_;
   size_t bins_, knots_;
   Interaction at_;
-  std::vector<float> W_, w_, back_, p_, spectra_;
+  std::vector<float> W_, back_, spectra_;
+  SurfaceWalk walk_;
   TraceStatistics trace_;
   std::vector<Going> going_;
   std::vector<Ray> rays_, sights_;

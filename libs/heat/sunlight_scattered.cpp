@@ -22,8 +22,8 @@ void SunlightWave::scattered(size_t begin, size_t end) {
   first_ = static_cast<uint32_t>(begin), rows_.assign((end - begin) * 2 * options_.blocks * sunny_.size(), 0.0f);
   sky_.assign((end - begin) * kSkyPatches, 0.0f);
   sky_of_block_.assign((end - begin) * options_.blocks * kSkyShapes, 0.0f);
-  fly(
-      tracer_, going_, rays_, hits_, trace_,
+  walk(
+      tracer_, going_, rays_, hits_, false, trace_,
       [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); },
       [this] { answer_sun(); });
   add_scattered(begin, end);
@@ -49,9 +49,8 @@ void SunlightWave::start(uint32_t row) {
     at_.baked->model->total(at_.frame.to_local(d), W_);
     Going path;
     path.slot = slot;
-    path.knot = std::min(static_cast<int>(u[2] * static_cast<double>(knots_)), static_cast<int>(knots_) - 1);
+    path.drawn.start(u[2], knots_);
     path.spectrum = static_cast<uint32_t>(spectra_.size() / bins_);
-    path.ratios.fill(1);
     double any = 0;
     for (size_t i = 0; i < bins_; ++i) {
       const float kept = 1 - std::min(1.0f, W_[i]);
@@ -132,24 +131,14 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
   ask_sun(path, hit, ray.direction, n);
   const PathNumbers numbers = numbers_of(path.slot, kPurpose);
   const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 1 + n);
-  const auto drawn = draw_reflection(model, out, u, path.knot, w_, p_);
+  const auto drawn = walk_.draw(model, out, u, path.drawn.knot);
   if (!drawn) return false;
-  const double own = static_cast<double>(p_[static_cast<size_t>(path.knot)]);
   const std::span<float> T = throughput(path);
-  float most = 0;
-  for (size_t i = 0; i < bins_; ++i) {
-    T[i] *= static_cast<float>(static_cast<double>(w_[i]) / own);
-    most = std::max(most, T[i]);
-  }
-  for (size_t k = 0; k < knots_; ++k) path.ratios[k] *= static_cast<double>(p_[k]) / own;
-  if (n >= kRouletteFrom) {
-    const double survives = std::min(1.0, static_cast<double>(most) * mean_ratio(path) / kPi);
-    if (!(u[3] < survives)) return false;
-    for (float& t : T) t = static_cast<float>(static_cast<double>(t) / survives);
-  }
+  const double most = walk_.take(path.drawn, T), left = most * mean_ratio(path) / kPi;
+  if (n >= kRouletteFrom && !SurfaceWalk::survives(T, left, u[3])) return false;
   if (!(most > 0)) return false;
   if (n >= kMostReflections) {
-    unfinished_ += static_cast<double>(most) * mean_ratio(path) / kPi;
+    unfinished_ += left;
     return false;
   }
   const Dir d = at_.frame.to_world(drawn->in);

@@ -49,9 +49,8 @@ class SunlightWave {
   };
   struct Going {
     uint32_t slot;
-    int knot = 0;
-    uint32_t spectrum;                     // number of its throughput
-    std::array<double, kMaxKnots> ratios;  // density at each knot over that at its own, of the path so far
+    uint32_t spectrum;  // number of its throughput
+    WalkDensities drawn;
   };
   struct Join {
     uint32_t row;    // of the face, its block and half, of those that go together
@@ -125,7 +124,7 @@ class SunlightWave {
   void lift_beam();
   void add_scattered(size_t begin, size_t end);
   void add_sky(size_t begin, size_t end);
-  double mean_ratio(const Going& path) const { return suite::mean_ratio(path.ratios, knots_); }
+  double mean_ratio(const Going& path) const { return path.drawn.weight(knots_); }
   void leave(const Going& path, Dir d);
   std::span<float> throughput(const Going& path) { return {&spectra_[size_t{path.spectrum} * bins_], bins_}; }
 
@@ -153,7 +152,8 @@ class SunlightWave {
   std::vector<float> beam_, parts_;        // of one face, as Sunlight::beam and beam_of_block
   std::vector<float> sky_, sky_of_block_;  // of those that go together, as Sunlight has them
   Interaction at_;
-  std::vector<float> W_, w_, p_;
+  std::vector<float> W_, w_;
+  SurfaceWalk walk_;
   const float* kept_of_ = nullptr;  // reflectance of which kept_ is told
   std::vector<float> kept_;         // by moment
   LitTime lit_;

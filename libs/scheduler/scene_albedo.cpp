@@ -7,6 +7,7 @@
 #include "math/stats.h"
 #include "math/warps.h"
 #include "surface/surface.h"
+#include "surface/surface_walk.h"
 
 namespace suite {
 
@@ -14,8 +15,8 @@ namespace {
 
 constexpr uint32_t kPaths = 4096;
 constexpr uint32_t kPurpose = 0x616c62;  // of random numbers
-constexpr uint32_t kMostSurfaces = 64;   // met by a path; what is left then, counts as absorbed
-constexpr float kNothing = 1e-3f;        // of a path's light
+constexpr uint32_t kMostSurfaces = 256;  // met by a path; what is left then, counts as absorbed
+constexpr uint32_t kRouletteFrom = 2;    // surfaces
 
 class Paths {
  public:
@@ -25,45 +26,38 @@ class Paths {
         knots_(optics.state().knots.size()),
         surface_(tracer, optics),
         numbers_(1, kPurpose, 0),
-        time_(time) {}
+        time_(time),
+        walk_(optics.state()) {}
 
   SceneAlbedo run() {
     start();
-    std::vector<double> sums(bins_, 0.0);
-    RunningStats of_paths;
-    uint32_t met = 0;
-    for (uint32_t n = 0; n < kMostSurfaces && !rays_.empty(); ++n) {
-      hits_.resize(rays_.size());
-      tracer_.nearest(rays_, hits_, n == 0, trace_);
-      size_t kept = 0;
-      for (size_t i = 0; i < rays_.size(); ++i) {
-        const uint32_t path = paths_[i];
-        float* const light = &light_[path * bins_];
-        Ray ray = rays_[i];
-        if (!hits_[i].hit()) {
-          if (n == 0) continue;
-          double mean = 0;
-          for (size_t b = 0; ray.direction.z > 0 && b < bins_; ++b)
-            sums[b] += double{light[b]}, mean += double{light[b]} / static_cast<double>(bins_);
-          of_paths.add(mean);
-          continue;
-        }
-        if (n == 0) ++met;
-        if (go_on(hits_[i], ray, path, n))
-          rays_[kept] = ray, paths_[kept++] = path;
-        else
-          of_paths.add(0);
-      }
-      rays_.resize(kept), paths_.resize(kept);
-    }
+    sums_.assign(bins_, 0.0);
+    walk(
+        tracer_, going_, rays_, hits_, true, trace_,
+        [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) {
+          if (!hit.hit()) {
+            if (n > 0) of_paths_.add(leave(path, ray.direction));
+            return false;
+          }
+          met_ += n == 0;
+          const bool goes_on = go_on(path, hit, ray, n);
+          if (!goes_on) of_paths_.add(0);
+          return goes_on;
+        },
+        [] {});
     SceneAlbedo out;
-    if (met == 0) return out;
-    for (const double sum : sums) out.of_bins.push_back(static_cast<float>(std::clamp(sum / met, 0.0, 1.0)));
-    out.error = of_paths.stderr_of_mean();
+    if (met_ == 0) return out;
+    for (const double sum : sums_) out.of_bins.push_back(static_cast<float>(std::clamp(sum / met_, 0.0, 1.0)));
+    out.error = of_paths_.stderr_of_mean();
     return out;
   }
 
  private:
+  struct Going {
+    uint32_t number;
+    WalkDensities drawn;
+  };
+  std::span<float> light(const Going& path) { return {&light_[path.number * bins_], bins_}; }
   void start() {
     Box3 box = tracer_.scene().bounds;
     if (box.empty()) box.grow(Vec3{});
@@ -77,37 +71,40 @@ class Paths {
       // Rays aim at the outline in the middle of the heights, so that they come from all around it.
       const Vec3 aim{box.low.x + u[0] * size.x, box.low.y + u[1] * size.y, box.center().z};
       rays_.push_back({aim + up * z, -up, time_, p});
-      paths_.push_back(p);
+      Going path{p, {}};
+      path.drawn.start(numbers_.hashed(p, 0), knots_);
+      going_.push_back(path);
     }
   }
 
+  // What a path takes out of the scene, the mean over the bins.
+  double leave(const Going& path, Dir d) {
+    if (!(d.z > 0)) return 0;
+    const double weight = path.drawn.weight(knots_);
+    double mean = 0;
+    const std::span<const float> T = light(path);
+    for (size_t b = 0; b < bins_; ++b) {
+      const double value = double{T[b]} * weight;
+      sums_[b] += value, mean += value / static_cast<double>(bins_);
+    }
+    return mean;
+  }
+
   // False when the path has ended.
-  bool go_on(const Hit& hit, Ray& ray, uint32_t path, uint32_t n) {
+  bool go_on(Going& path, const Hit& hit, Ray& ray, uint32_t n) {
     surface_.interact(hit, -ray.direction, at_, ray.time);
+    if (n + 1 >= kMostSurfaces) return false;
     if (!at_.baked || !at_.baked->model) {
       ray.origin = tracer_.leave(hit, ray.direction);
       return true;
     }
-    const ScatterModel& model = *at_.baked->model;
-    const Dir out = at_.frame.to_local(-ray.direction);
-    const std::array<double, 4> u = numbers_.draw(path, 1 + n);
-    const auto knot = static_cast<int>(numbers_.hashed(path, n) * static_cast<double>(knots_));
-    const auto drawn = model.sample(out, {u[0], u[1]}, u[2], knot);
+    const std::array<double, 4> u = numbers_.draw(path.number, 1 + n);
+    const auto drawn = walk_.draw(*at_.baked->model, at_.frame.to_local(-ray.direction), u, path.drawn.knot);
     if (!drawn) return false;
-    w_.resize(bins_), p_.resize(knots_);
-    if (drawn->delta) {
-      model.delta_weight(out, drawn->lobe, knot, w_);
-      model.delta_probability(out, drawn->lobe, knot, p_);
-    } else {
-      model.eval(out, drawn->in, w_);
-      model.pdf(out, drawn->in, p_);
-    }
-    float density = 0, largest = 0;
-    for (const float p : p_) density += p / static_cast<float>(knots_);
-    if (!(density > 0)) return false;
-    float* const light = &light_[path * bins_];
-    for (size_t b = 0; b < bins_; ++b) largest = std::max(largest, light[b] *= w_[b] / density);
-    if (!(largest > kNothing)) return false;
+    const std::span<float> T = light(path);
+    const double most = walk_.take(path.drawn, T);
+    if (!(most > 0)) return false;
+    if (n >= kRouletteFrom && !SurfaceWalk::survives(T, most * path.drawn.weight(knots_), u[3])) return false;
     const Dir d = at_.frame.to_world(drawn->in);
     ray.origin = tracer_.leave(hit, d), ray.direction = d;
     return true;
@@ -119,11 +116,15 @@ class Paths {
   SampleStream numbers_;
   double time_;
   Interaction at_;
+  SurfaceWalk walk_;
   TraceStatistics trace_;
+  std::vector<Going> going_;
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
-  std::vector<uint32_t> paths_;
-  std::vector<float> light_, w_, p_;  // of [path][bin], of a reflection
+  std::vector<float> light_;  // of [path][bin]
+  std::vector<double> sums_;  // of what left upwards, per bin
+  RunningStats of_paths_;
+  uint32_t met_ = 0;
 };
 
 Curve curve_of(const SceneAlbedo& albedo, const SpectralState& state) {

@@ -182,7 +182,7 @@ void BlockRun::take(uint32_t p) {
   const PathRecord& record = kernel.record(p);
   ++statistics_.paths;
   statistics_.truncated += record.truncated;
-  statistics_.strayed += record.strayed;
+  statistics_.strayed += record.leaked;
   sums_.take(slot, scramble);
   const double sum_before = watched_ ? reference_sum(slot) : 0;
   if (!add(p, slot, scramble)) {

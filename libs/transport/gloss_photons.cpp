@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "math/sampling.h"
+#include "surface/surface_walk.h"
 #include "transport/gloss_turn.h"
 
 namespace suite {
@@ -161,20 +162,13 @@ class Sender {
       Flying photon{};
       if (aim(hash_of(0x676c6f7373ull, first + i), ray, photon)) rays_.push_back(ray), flying_.push_back(photon);
     }
-    while (!rays_.empty()) {
-      hits_.assign(rays_.size(), {});
-      TraceStatistics unused;
-      surface_.tracer().nearest(rays_, hits_, false, unused);
-      size_t kept = 0;
-      for (size_t i = 0; i < rays_.size(); ++i) {
-        if (!hits_[i].hit()) continue;
-        Ray ray = rays_[i];
-        Flying photon = flying_[i];
-        if (!arrive(hits_[i], ray, photon, landed)) continue;
-        rays_[kept] = ray, flying_[kept++] = photon;
-      }
-      rays_.resize(kept), flying_.resize(kept);
-    }
+    TraceStatistics unused;
+    walk(
+        surface_.tracer(), flying_, rays_, hits_, false, unused,
+        [&](Flying& photon, Ray& ray, const Hit& hit, uint32_t) {
+          return hit.hit() && arrive(hit, ray, photon, landed);
+        },
+        [] {});
   }
 
   // A photon has met a surface: it lands there, or is turned within a narrow lobe and flies on.

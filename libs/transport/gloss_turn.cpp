@@ -5,6 +5,7 @@
 
 #include "math/sampling.h"
 #include "math/warps.h"
+#include "surface/surface_walk.h"
 
 namespace suite {
 
@@ -18,17 +19,17 @@ constexpr double kOwn = 0.8;
 
 std::optional<GlossTurn::Turn> GlossTurn::draw(const ScatterModel& model, Dir to, const std::array<double, 4>& u) {
   Turn turn;
+  float density[kMaxKnots] = {};
   if (u[3] < kOwn) {
-    const auto drawn = model.sample(to, {u[0], u[1]}, u[2], 0);
+    const auto drawn = draw_reflection(model, to, u, 0, spectrum_, {density, state_.knots.size()});
     if (!drawn) return std::nullopt;
-    if (drawn->delta) return mirrored(model, to, *drawn);
+    if (drawn->delta) return mirrored(to, *drawn, density[0]);
     turn.in = drawn->in;
   } else {
     turn.in = cosine_hemisphere({u[0], u[1]});
     if (to.z < 0) turn.in.z = -turn.in.z;
+    model.pdf(to, turn.in, {density, state_.knots.size()});
   }
-  float density[kMaxKnots] = {};
-  model.pdf(to, turn.in, {density, state_.knots.size()});
   const double even = turn.in.z * to.z > 0 ? std::fabs(turn.in.z) / kPi : 0;
   const double p = kOwn * double{density[0]} + (1 - kOwn) * even;
   const double brdf = value(model, turn.in, to) / std::fabs(to.z);
@@ -39,12 +40,8 @@ std::optional<GlossTurn::Turn> GlossTurn::draw(const ScatterModel& model, Dir to
   return turn;
 }
 
-std::optional<GlossTurn::Turn> GlossTurn::mirrored(const ScatterModel& model, Dir to,
-                                                   const ScatterModel::Sample& drawn) {
-  float probability[kMaxKnots] = {};
-  model.delta_weight(to, drawn.lobe, 0, spectrum_);
-  model.delta_probability(to, drawn.lobe, 0, {probability, state_.knots.size()});
-  const double weight = at_reference(spectrum_) / (kOwn * double{probability[0]});
+std::optional<GlossTurn::Turn> GlossTurn::mirrored(Dir to, const ScatterModel::Sample& drawn, float probability) const {
+  const double weight = at_reference(spectrum_) / (kOwn * double{probability});
   if (drawn.in.z * to.z < 0 || !(weight > 0)) return std::nullopt;
   return Turn{drawn.in, true, true, weight};
 }

@@ -30,7 +30,8 @@ class GlossTurn {
 
  private:
   bool is_glossy(const ScatterModel& model);
-  std::optional<Turn> mirrored(const ScatterModel& model, Dir to, const ScatterModel::Sample& drawn);
+  // By a Dirac lobe, whose weights stand in spectrum_.
+  std::optional<Turn> mirrored(Dir to, const ScatterModel::Sample& drawn, float probability) const;
   double value(const ScatterModel& model, Dir out, Dir in);
 
   const SpectralState& state_;

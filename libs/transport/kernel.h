@@ -14,6 +14,7 @@
 // for light transport simulation", 1997.
 #pragma once
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "transport/flat_mirrors.h"
@@ -34,12 +35,7 @@ class PathKernel final : public PathTracing {
 
   void start(uint32_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) override;
   bool next(TraceRequest& request) override;
-  const PathRecord& record(uint32_t p) override {
-    if (!techniques_.residual.has_been_back(p)) wave_.records[p].size = wave_.paths[p].surfaces;
-    PathRecord& record = techniques_.residual.record(p, wave_.records[p]);
-    record.size = techniques_.splitting.surfaces(p, record.size);
-    return record;
-  }
+  const PathRecord& record(uint32_t p) override;
   const FirstMeeting& first(uint32_t p) const override { return firsts_[p]; }
   uint64_t take_nodes() override { return std::exchange(nodes_met_, 0); }
   TraceStatistics take_statistics() override;
@@ -56,17 +52,12 @@ class PathKernel final : public PathTracing {
     return techniques_.side.asks(wave_, node, light);
   }
   // How many samples of the light share its density there, whatever becomes of them: 1 unless said before connect().
-  void set_draws(const PathNode& node, const SampledLight& light, int draws) {
-    if (!light.nature.far && !wave_.lights.glowing.empty()) wave_.last[node.path].draws = draws;
-  }
+  void set_draws(const PathNode& node, const SampledLight& light, int draws);
   // Sends a shadow ray towards a sample. draws: samples of the light that share its density. asks: as above.
   void connect(const PathNode& node, const SampledLight& light, const LightSample& sample, int draws, double asks = 1);
   void set_parallel() { wave_.sight_rays.parallel = wave_.sight_rays.size(); }
   // At most n more shadow rays follow.
-  void expect(size_t n) {
-    wave_.sight_rays.expect(n);
-    if (questions_.size() < wave_.sight_rays.size() + n) questions_.resize(2 * (wave_.sight_rays.size() + n));
-  }
+  void expect(size_t n);
 
  private:
   enum class Stage : uint8_t {
@@ -83,7 +74,7 @@ class PathKernel final : public PathTracing {
 
   // kernel_fly.h: from one node to the next.
   void request_hits(TraceRequest& request);
-  void see_from_above();
+  // kernel_fill.h: through what fills space.
   void fly();
   void fly_one(size_t slot);
   bool meets_outside(const Path& path) const;
@@ -91,11 +82,8 @@ class PathKernel final : public PathTracing {
   void arrive();
   SUITE_INLINE bool meet(uint32_t p, uint32_t slot);
   bool meet_earth(uint32_t p, uint32_t slot);
-  void receive(uint32_t p);
   SUITE_INLINE void enter_node(uint32_t p, const Hit& hit, bool first);
   SUITE_INLINE void escape(uint32_t p, bool in_field);
-  void meet_glow(uint32_t p, const Hit& hit);
-  void emit(uint32_t p);
   bool is_first_surface(uint32_t p) const {
     return !techniques_.residual.has_been_back(p) && wave_.paths[p].surfaces == wave_.paths[p].received;
   }
@@ -110,17 +98,25 @@ class PathKernel final : public PathTracing {
   void go_on();
   SUITE_INLINE bool go_on(size_t i);
   bool go_on(size_t i, const Continuation& on);
-  void branch(size_t i);
   SUITE_INLINE bool draw(size_t i, Continuation& on);
   SUITE_INLINE bool draw(size_t i, std::span<float> memory, Continuation& on);
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
-  bool fail(uint32_t p);
-  SUITE_INLINE double ahead(size_t i, const Continuation& on) const;
   SUITE_INLINE double survives(uint32_t p, double brightest);
   SUITE_INLINE bool cut(size_t i, const Continuation& on);
   // Whether it has passed a surface.
   SUITE_INLINE bool leave(size_t i, const Continuation& on);
+  // kernel_beside.h: what only some paths come to.
+  void see_from_above();
+  void receive(uint32_t p);
+  void meet_glow(uint32_t p, const Hit& hit);
+  void emit(uint32_t p);
+  // Of a light that path p has met: no technique claims it.
+  SUITE_INLINE bool is_left_to_chance(uint32_t p, ClaimedLight light);
+  void branch(size_t i);
+  std::optional<bool> draw_at_interface(const PathNode& node, double lobe_u, std::span<float> memory, Continuation& on);
+  SUITE_INLINE double ahead(size_t i, const Continuation& on) const;
   void leave_claims(const PathNode& node, const Continuation& on);
+  bool fail(uint32_t p);
 
   Wave wave_;
   Techniques<Wave> techniques_;

@@ -9,19 +9,6 @@
 
 namespace suite {
 
-template <class Wave>
-TraceStatistics PathKernel<Wave>::take_statistics() {
-  TraceStatistics all = wave_.space.take_statistics();
-  const TraceStatistics touching = std::exchange(wave_.touching, {});
-  all.rays += touching.rays, all.cycles += touching.cycles;
-  if constexpr (Techniques<Wave>::kModels)
-    if (techniques_.manifold.on()) {
-      const TraceStatistics ways = techniques_.manifold.sight().take_statistics();
-      all.rays += ways.rays, all.cycles += ways.cycles;
-    }
-  return all;
-}
-
 // Draws where all paths of the stage go on.
 template <class Wave>
 void PathKernel<Wave>::go_on() {
@@ -74,18 +61,6 @@ bool PathKernel<Wave>::go_on(size_t i, const Continuation& on) {
   return true;
 }
 
-// The branches of a node that are kept.
-template <class Wave>
-void PathKernel<Wave>::branch(size_t i) {
-  if constexpr (Space::kMedia) {
-    const PathNode& node = wave_.nodes[i];
-    const auto on_by = [&](size_t j, const Continuation& on) { return go_on(j, on); };
-    if (techniques_.guide.guides(wave_, node)) techniques_.splitting.branch_guided(wave_, techniques_.guide, i, on_by);
-    if (wave_.is_first(node) && !node.event && techniques_.manifold.is_interface(wave_, node))
-      techniques_.splitting.branch_mirrored(wave_, techniques_.manifold, i, on_by);
-  }
-}
-
 // Brings r_k and the throughputs at the knots behind the event, divided by A; returns A.
 template <class Wave>
 double PathKernel<Wave>::weigh(uint32_t p, const Continuation& on, double own, double& brightest) {
@@ -110,15 +85,6 @@ double PathKernel<Wave>::weigh(uint32_t p, const Continuation& on, double own, d
     if (std::isnan(brightest)) return shares;
   }
   return shares;
-}
-
-// A path that cannot go on because a model gave what is no number: its sample is rejected and counted.
-template <class Wave>
-bool PathKernel<Wave>::fail(uint32_t p) {
-  wave_.contribution(p, kFromMatter).scale = std::numeric_limits<float>::quiet_NaN();
-  wave_.contribute();
-  wave_.hand_over();
-  return false;
 }
 
 template <class Wave>
@@ -150,36 +116,11 @@ bool PathKernel<Wave>::draw(size_t i, std::span<float> memory, Continuation& on)
   }
   const double lobe_u = wave_.surfaces.needs_lobe(node.path) ? wave_.numbers(node, dimensions::kOfSecond)[0] : 0;
   if constexpr (Surfaces::kDense > 0)
-    if (techniques_.manifold.on() && wave_.is_first(node) && techniques_.manifold.is_interface(wave_, node)) {
-      // What water mirrors is weak, but in dark bands all there is. A power of 1/2: counts of strata have no rest.
-      constexpr double kLeast = 0.125;
-      const Dir out = -path.direction;
-      const int mirror = techniques_.manifold.interfaces().lobe(wave_.surfaces.material(node.path), true);
-      if (mirror != SmoothInterfaces::kNoLobe && !techniques_.splitting.on())
-        return wave_.surfaces.sample_either(node.path, out, mirror, kLeast, lobe_u, path.knot, memory, on);
-      if (mirror != SmoothInterfaces::kNoLobe) {  // beside what the branch that is kept
-        const bool all = wave_.surfaces.mirrors(node.path, out, mirror, path.knot) >= 1;
-        return wave_.surfaces.sample_way(node.path, out, mirror, all, path.knot, memory, on);
-      }
-    }
+    if (techniques_.manifold.on() && wave_.is_first(node) && techniques_.manifold.is_interface(wave_, node))
+      if (const auto drawn = draw_at_interface(node, lobe_u, memory, on)) return *drawn;
   if constexpr (Surfaces::kDense > 0)
     if (techniques_.caustics.guides(wave_, node)) return techniques_.caustics.draw(wave_, i, u, lobe_u, memory, on);
   return wave_.surfaces.sample(i, node.path, wave_.hits[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
-}
-
-// How much more of its light a path is worth to roulette that comes to a smooth surface from within water: most leave
-// there, with the light of a sky that nobody asks for through the surface, and end; to end them first saves next to
-// nothing. A value of 6 takes 0.5 to 0.7 of the work to an error in the bay of sample_scenes, coastal to red.
-template <class Wave>
-double PathKernel<Wave>::ahead(size_t i, const Continuation& on) const {
-  if constexpr (Space::kMedia) {
-    constexpr double kLeaves = 6, kClaimed = 0.1;
-    const double index = wave_.space.index(wave_.nodes[i].path);
-    if (techniques_.chains.passes_into_claimed_sky(wave_, techniques_.manifold, i, on))
-      return kClaimed;  // what others bring is not worth while
-    if (techniques_.splitting.on() && on.dirac && index > 1) return kLeaves * index * index;
-  }
-  return 1;
 }
 
 // The probability with which the path has survived; 0 when roulette ends it.
@@ -239,21 +180,6 @@ bool PathKernel<Wave>::leave(size_t i, const Continuation& on) {
   path.arrival += wave_.space.delay(p) * step_along(hit, on.in);
   path.direction = on.in;
   return passed;
-}
-
-// The claims on the light that the path may meet behind the node.
-template <class Wave>
-void PathKernel<Wave>::leave_claims(const PathNode& node, const Continuation& on) {
-  constexpr Claim kManifold = Claim::manifold(RefractedWay::kMostEvents);
-  PathClaims& claims = wave_.paths[node.path].claims;
-  const NodeClaims* const made = techniques_.chains.claims(wave_, node);
-  if (node.event) {
-    if (wave_.in_air(node)) return claims.clear();  // it asks for nothing through interfaces
-    return claims.leave_scattering(made, kManifold, on.in);
-  }
-  if (techniques_.manifold.is_interface(wave_, node)) return claims.meet_interface(!wave_.passes(node, on));
-  // Nodes ask for what comes by other than Dirac lobes.
-  if (!on.dirac) claims.leave_surface(made, kManifold, on.in);
 }
 
 }  // namespace suite

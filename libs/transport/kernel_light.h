@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "transport/kernel.h"
+#include "transport/techniques/suffix_throughput.h"
 
 namespace suite {
 
@@ -29,6 +30,17 @@ void PathKernel<Wave>::sample_lights() {
   Estimator::sample_lights(*this, wave_.options);
   if (techniques_.manifold.on()) techniques_.manifold.want_places(wave_);
   wave_.space.sight().begin(wave_.sight_rays);
+}
+
+template <class Wave>
+void PathKernel<Wave>::expect(size_t n) {
+  wave_.sight_rays.expect(n);
+  if (questions_.size() < wave_.sight_rays.size() + n) questions_.resize(2 * (wave_.sight_rays.size() + n));
+}
+
+template <class Wave>
+void PathKernel<Wave>::set_draws(const PathNode& node, const SampledLight& light, int draws) {
+  if (!light.nature.far && !wave_.lights.glowing.empty()) wave_.last[node.path].draws = draws;
 }
 
 template <class Wave>
@@ -137,15 +149,15 @@ void PathKernel<Wave>::lack(const Question& q, size_t i, bool blocked) {
   const PathNode& node = wave_.nodes[q.node];
   if (!wave_.space.lacks(wave_.sight_rays.rays()[i], wave_.sight_rays.distance()[i], i, blocked, wave_.transmission))
     return;
-  const std::span<float> memory = wave_.dense(node.path, 2);
-  wave_.evaluate(node, q.direction, memory);
-  for (size_t k = 0; k < wave_.bins; ++k) memory[k] *= wave_.transmission[k];
+  SuffixThroughput<Wave> suffix(wave_, wave_.dense(node.path, 2));
+  suffix.leave_as_is(node, q.direction);
+  suffix.weaken_as_is(wave_.transmission);
   const float* const radiance = q.spectrum ? q.spectrum : spectrum_of(q, i);
   Contribution& c = wave_.contribution(node.path, q.light);
   c.asked = c.beam = true;
   if (wave_.waters.any()) c.water = wave_.water_behind(node, q.direction);
   c.scale = static_cast<float>(-q.scale / (q.density > 0 ? q.density : 1));
-  c.factor = {1, memory.data()};
+  c.factor = suffix.as_is();
   c.radiance = radiance;
   wave_.contribute();
 }
@@ -171,14 +183,10 @@ void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
     if (!(by_chance > 0) || missed > LostLight::kOftenMet) return;
   }
   constexpr bool kNeeds = Surfaces::kDense > 0 || Space::kFills;
-  const std::span<float> memory = kNeeds ? wave_.dense(p, 2) : std::span<float>{};
-  Factor factor = wave_.evaluate(node, q.direction, memory);
-  if (dim) {
-    for (size_t k = 0; k < wave_.bins; ++k)
-      memory[k] = (factor.spectrum ? factor.spectrum[k] : 1.0f) * wave_.transmission[k];
-    factor.spectrum = memory.data();
-  }
-  if (kNeeds && factor.spectrum != memory.data()) wave_.throughputs.give_back(p);
+  SuffixThroughput<Wave> suffix(wave_, kNeeds ? wave_.dense(p, 2) : std::span<float>{});
+  suffix.leave_as_is(node, q.direction);
+  if (dim) suffix.weaken_as_is(wave_.transmission);
+  if (kNeeds && !suffix.stands_in_memory()) wave_.throughputs.give_back(p);
   const float* const radiance = q.spectrum ? q.spectrum : spectrum_of(q, i);
   if (arrives && keep_first_ && q.light == wave_.environment.sun && !node.event && wave_.is_first(node))
     firsts_[p].sunlit = true;
@@ -193,7 +201,7 @@ void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
   const bool point = arrives && !(q.density > 0) && distance < std::numeric_limits<double>::infinity();
   c.scale = static_cast<float>(passes * q.scale / denominator * techniques_.side.beside(wave_, node, q.light) *
                                techniques_.equiangular.beside(wave_, node, q.light, point));
-  c.factor = factor;
+  c.factor = suffix.as_is();
   c.radiance = radiance;
   c.missed = static_cast<float>(missed);
   if (distance < std::numeric_limits<double>::infinity()) {

@@ -95,25 +95,6 @@ bool PathKernel<Wave>::meet_earth(uint32_t p, uint32_t slot) {
   return scatters;
 }
 
-// The first node of a path that starts at a receiver.
-template <class Wave>
-void PathKernel<Wave>::receive(uint32_t p) {
-  if constexpr (requires(Surfaces & s) { s.receive(p, wave_.hits[0], receivers_[p]); }) {
-    Path& path = wave_.paths[p];
-    const auto slot = static_cast<uint32_t>(active_.size());
-    active_.push_back(p);
-    Hit& hit = wave_.hits[slot];
-    hit = {};
-    hit.position = path.origin;
-    hit.normal = path.direction;
-    hit.time = path.time;
-    wave_.surfaces.receive(p, hit, receivers_[p]);
-    ++path.surfaces;
-    path.direction = -path.direction;  // out, as the receiver sees it, is along its normal
-    wave_.nodes.push_back({p, slot, false});
-  }
-}
-
 // What a path meets outside the scene. in_field: but for beams, which the field of the air has.
 template <class Wave>
 void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
@@ -123,8 +104,7 @@ void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
   for (const SampledLight& light : wave_.lights.outside) {
     if (in_field && light.beam) continue;
     if (light.nature.above && path.order() == 0 && light.light->is_below(path.origin)) continue;
-    if (is_refracted(light.nature) && techniques_.manifold.is_claimed(path, {ClaimedLight::Kind::small, light.index}))
-      continue;
+    if (is_refracted(light.nature) && !is_left_to_chance(p, {ClaimedLight::Kind::small, light.index})) continue;
     const auto met = light.light->met_outside(path.direction, path.time);
     if (!met) continue;
     std::span<float> memory;
@@ -144,52 +124,6 @@ void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
     c.radiance = met->spectrum;
     if (!c.radiance) c.radiance = memory.data();
     if (c.scale != 0) wave_.contribute();
-  }
-}
-
-// A surface met by chance may shine; what an explicit sample of it brings is shared with it.
-template <class Wave>
-void PathKernel<Wave>::meet_glow(uint32_t p, const Hit& hit) {
-  const Path& path = wave_.paths[p];
-  const LastAsked& last = wave_.last[p];
-  const bool shared = path.order() > 1 && wave_.options.explicit_sources && path.last_density > 0;
-  double distance = hit.distance;
-  if (Space::kScatters && shared)  // boundaries of media may have been passed on the way
-    distance = wave_.surface.tracer().periodic() ? path.length - last.length : length(hit.position - last.at.position);
-  const double cosine = -dot(path.direction, hit.normal);
-  for (const SampledLight& light : wave_.lights.glowing) {
-    if (light.nature.placed && techniques_.manifold.is_claimed(path, {ClaimedLight::Kind::small, light.index}) &&
-        light.light->draws(hit))
-      continue;
-    const auto met =
-        light.light->met_surface(last.at, hit, wave_.surfaces.material(p), path.direction, distance, cosine, path.time);
-    if (!met) continue;
-    Contribution& c = wave_.contribution(p, light.index);
-    c.order -= 1;  // not scattered by what shines
-    c.scale = static_cast<float>(met->scale);
-    if (shared && met->density > 0)
-      c.scale *= static_cast<float>(
-          Estimator::by_chance(light.nature, path.before * last.draws * met->density / path.last_density));
-    c.radiance = met->spectrum;
-    if (c.scale != 0) wave_.contribute();
-  }
-}
-
-// Warm surfaces.
-template <class Wave>
-void PathKernel<Wave>::emit(uint32_t p) {
-  if constexpr (Surfaces::kDense > 0) {
-    if (!wave_.surfaces.warm(p)) return;
-    const std::span<float> memory = wave_.dense(p);
-    const auto emission = wave_.surfaces.emission(p, -wave_.paths[p].direction, memory);
-    wave_.space.emit_within(p, memory);
-    Contribution& c = wave_.contribution(p, kFromMatter);
-    c.order -= 1;  // not scattered by what emits
-    c.factor = emission.emissivity;
-    c.radiance = emission.radiance;
-    if constexpr (Wave::kStokes) c.polarised = wave_.polarise_emission(p);
-    wave_.contribute();
-    if constexpr (Wave::kStokes) wave_.hand_over();
   }
 }
 

@@ -1,6 +1,8 @@
 // The kernels that occur, and which of them serves a state.
 #include "transport/estimators/paper.h"
 #include "transport/estimators/standard.h"
+#include "transport/kernel_beside.h"
+#include "transport/kernel_fill.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"

@@ -1,5 +1,7 @@
 // The kernel of media in air whose light knows the scene.
 #include "transport/estimators/standard.h"
+#include "transport/kernel_beside.h"
+#include "transport/kernel_fill.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"

@@ -1,5 +1,7 @@
 // The kernels of paths that carry polarisation.
 #include "transport/estimators/standard.h"
+#include "transport/kernel_beside.h"
+#include "transport/kernel_fill.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"

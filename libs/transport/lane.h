@@ -1,5 +1,6 @@
 // A path on its way: what the kernel must remember of it from one event to the next.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -61,6 +62,16 @@ struct Lane {
   std::array<float, 3> line;  // of sight, likewise
   WaterSeen water = WaterSeen::nothing;
   uint32_t order() const { return surfaces + scatterings; }
+  // Nothing has happened yet; claims apart, which only techniques read.
+  void begin(size_t heroes) {
+    length = arrival = last_density = 0;
+    before = share = 1;
+    surfaces = scatterings = smooth = flights = 0, events = 0;
+    branch = Branch::none, sided = false;
+    water = WaterSeen::nothing, knot = 0;
+    relative.start(heroes);
+    std::fill_n(throughput, heroes, 1.0);
+  }
 };
 
 // The last place of a path that asked for light; kept where surfaces shine.
@@ -79,7 +90,7 @@ struct PathRecord {
   Dir escape;  // direction in which it left the scene
   // Throughput at the reference that was cut at the maximum number of nodes, for light in air: times the squared index.
   double truncated = 0;
-  double strayed = 0;            // likewise, that left bodies of media where they have no surface
+  double leaked = 0;             // likewise, that left bodies of media where they have no surface
   uint32_t size = 0;             // nodes: surfaces, the receiver included
   bool received = false;         // node 0 is the sensor's own receiver, no surface
   bool scattered_first = false;  // a medium scattered it before it met anything

@@ -48,6 +48,10 @@ class SpectralThroughputs {
     to.spectrum.resize(bins_);
     for (size_t i = 0; i < bins_; ++i) to.spectrum[i] = share * T[i];
   }
+  // The same of what was kept: weakened on the way, times a number.
+  static void attenuate(Kept& kept, float scale, std::span<const float> t) {
+    for (size_t i = 0; i < kept.spectrum.size(); ++i) kept.spectrum[i] *= scale * t[i];
+  }
   void resume(uint32_t p, const Kept& from) {
     settle(p);
     std::copy(from.spectrum.begin(), from.spectrum.end(), &throughput_[size_t{p} * stride_]);

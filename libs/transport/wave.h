@@ -67,6 +67,9 @@ class Wave {
   using Estimator = EstimatorOf;
   using Path = Lane<Surfaces::kKnots>;
   static constexpr bool kStokes = requires { typename Throughputs::Polarised; };
+  // Algebras of tests that watch who asks for which light, and what chance brings
+  // (tests/physics/transport/ownership_test.cpp).
+  static constexpr bool kWatched = requires { typename Throughputs::Watched; };
   Wave(const KernelContext& context, size_t width, Throughputs& throughputs, Sink<Throughputs>& sink);
 
   const Surface& surface;

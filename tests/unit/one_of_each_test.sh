@@ -31,9 +31,9 @@ places "surfaces that shine" 2 '(\.|->)met_surface\(' libs/transport
 places "explicit light"      2 'Estimator::asked\(' libs/transport
 places "continuations"       1 'throughputs\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
-# Beside a stage's own rays: photons that are sent before there are any, which media a place lies in, what lies in one place with an interface, and ways through
+# Beside a stage's own rays: which media a place lies in, what lies in one place with an interface, and ways through
 # interfaces, whose rays follow from each other; and rays of the truth `sky_view`, which no path takes.
-places "calls of the tracer" 9 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
+places "calls of the tracer" 8 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
 places "kinds of lights"     22 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
   libs/[a-km-z]* libs/light/*.h libs/light/*.cpp apps formats
 # Negative control: a second place is noticed.

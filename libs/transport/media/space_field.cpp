@@ -128,7 +128,7 @@ void FieldSpace::leave_scene(uint32_t p, const LivePath& live, PathRecord& recor
   const uint32_t medium = stacks_[p].medium(ambient_);
   bodies_.leave_scene(stacks_[p]);
   if (stacks_[p].medium(ambient_) != medium && live.branch != Branch::forced)
-    record.strayed += live.throughput[0] * live.share * index_of(medium) * index_of(medium);
+    record.leaked += live.throughput[0] * live.share * index_of(medium) * index_of(medium);
 }
 
 void FieldSpace::remember(uint32_t event, Vec3 place) {

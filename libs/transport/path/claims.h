@@ -99,6 +99,7 @@ class NodeClaims {
  public:
   bool empty() const { return size_ == 0; }
   std::span<const Claim> all() const { return {of_, size_}; }
+  std::span<Claim> all() { return {of_, size_}; }
   // The claim on light of this kind; null: none.
   const Claim* of(ClaimedLight::Kind kind) const {
     for (const Claim& c : all())
@@ -117,6 +118,7 @@ class NodeClaims {
       if (c.lights == kind) c.heroes |= 1u << hero;
   }
   double reach() const { return reach_; }  // m
+  const ClaimCone& cone() const { return cone_; }
   // Whether they are for light that comes to the node from a direction.
   bool are_for(Dir in) const { return cone_.has(in); }
 

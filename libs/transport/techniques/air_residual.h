@@ -31,7 +31,7 @@ class AirResidual {
   PathRecord& record(uint32_t p, PathRecord& last) {
     if (!passed_[p].again) return last;
     passed_[p].record.truncated += std::exchange(last.truncated, 0);
-    passed_[p].record.strayed += std::exchange(last.strayed, 0);
+    passed_[p].record.leaked += std::exchange(last.leaked, 0);
     return passed_[p].record;
   }
 
@@ -110,7 +110,7 @@ bool AirResidual<Wave>::go_back(Wave& wave, uint32_t p) {
     at.record.size = wave.paths[p].surfaces;
     at.record.scattered_first = at.record.scattered_first && at.path.scatterings > 0;  // not after that flight
     at.again = true;
-    wave.records[p].truncated = wave.records[p].strayed = 0;
+    wave.records[p].truncated = wave.records[p].leaked = 0;
   }
   ++at.times;
   Path& path = wave.paths[p] = at.path;
@@ -122,7 +122,7 @@ bool AirResidual<Wave>::go_back(Wave& wave, uint32_t p) {
     path.relative.take(wave.knots(), *density, own);
     const double shares = path.relative.mean(wave.P());
     const auto scale = static_cast<float>(sum / (at.weight * chance * own * shares));
-    for (size_t i = 0; i < wave.bins; ++i) at.there.spectrum[i] *= scale * through[i];
+    Wave::Throughputs::attenuate(at.there, scale, through);
     path.relative.divide(wave.knots(), shares);
     for (size_t k = 0; k < wave.knots(); ++k) path.throughput[k] *= double{scale} * through[wave.heroes.bins[k]];
     wave.throughputs.resume(p, at.there);

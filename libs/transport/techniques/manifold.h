@@ -140,6 +140,9 @@ void Manifold<Wave>::want_places(const Wave& wave) {
     if (!light.nature.placed) continue;
     for (const PathNode& node : wave.nodes) {
       if (!asks_through(wave, node)) continue;
+      if constexpr (Wave::kWatched)
+        for (size_t k = 0; k < wave.knots(); ++k)
+          wave.throughputs.ask(node.path, Technique::manifold, {ClaimedLight::Kind::small, light.index}, k);
       const auto drawn = light.light->draw_place(wave.receiver(node), wave.numbers(node, light.use), wave.time(node));
       if (!drawn) continue;
       questions_.push_back({static_cast<uint32_t>(wave.number_of(node)),
@@ -173,6 +176,7 @@ void Manifold<Wave>::answer(Wave& wave, Chains& chains, Guide& guide) {
       const ClaimedLight light{ClaimedLight::Kind::small, q.light};
       // Chains that began before this scattering bring it.
       if (owner(path.claims.all(), behind, light, k) == Technique::volume_chains) continue;
+      if constexpr (Wave::kWatched) wave.throughputs.ask(wave.nodes[q.node].path, Technique::manifold, light, k);
       answer(wave, q, k, chains, guide);
     }
   }

@@ -20,6 +20,16 @@ class SuffixThroughput {
   std::span<float> spectrum() const { return spectrum_; }
   const Matrices& matrices() const { return wave_.polarisation.suffix; }
 
+  // T <- w, of which nothing is multiplied before it has to be: what matte surfaces make of light stands elsewhere.
+  void leave_as_is(const PathNode& node, Dir in) { whole_ = wave_.evaluate(node, in, spectrum_); }
+  // T <- T t after that.
+  void weaken_as_is(std::span<const float> t) {
+    for (size_t b = 0; b < wave_.bins; ++b) spectrum_[b] = (whole_.spectrum ? whole_.spectrum[b] : 1.0f) * t[b];
+    whole_.spectrum = spectrum_.data();
+  }
+  // Whether the memory is part of it.
+  bool stands_in_memory() const { return whole_.spectrum == spectrum_.data(); }
+  const Factor& as_is() const { return whole_; }
   // T <- w: it begins with the node, which scatters light from `in`.
   void leave(const PathNode& node, Dir in) {
     const Factor w = wave_.evaluate(node, in, wave_.transmission);
@@ -86,6 +96,7 @@ class SuffixThroughput {
  private:
   Wave& wave_;
   std::span<float> spectrum_;
+  Factor whole_;
 };
 
 }  // namespace suite

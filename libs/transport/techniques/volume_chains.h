@@ -149,6 +149,8 @@ bool VolumeChains<Wave>::sample(Wave& wave, Manifold<Wave>& manifold, const Refr
     claims.add(Claim::chains(q.light, kMostLinks, RefractedWay::kMostEvents),
                cone_of(wave, manifold, node, q.light, knot), kReach * length);
   claims.add_hero(kSmall, knot);
+  if constexpr (Wave::kWatched)
+    wave.throughputs.ask(node.path, Technique::volume_chains, {kSmall, q.light}, knot, &claims);
   if (draw_chain(wave, node, toward, length, mean, false) && claims.are_for(chain_.toward[0]))
     follow_chain(wave, manifold, q, knot);
   return true;
@@ -330,6 +332,9 @@ void VolumeChains<Wave>::sample_sky(Wave& wave, Manifold<Wave>& manifold, const 
   if (mean == kNone) return;
   claims_[wave.number_of(node)].add(Claim::chains_of_sky(kMostLinks), ClaimCone{!node.event, path.direction, up},
                                     kReach * deep);
+  if constexpr (Wave::kWatched)
+    for (size_t k = 0; k < wave.knots(); ++k)
+      wave.throughputs.ask(node.path, Technique::volume_chains, ClaimedLight::sky(), k, &claims_[wave.number_of(node)]);
   const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
   const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
   if (!(sample.density > 0)) return;
@@ -380,8 +385,11 @@ void VolumeChains<Wave>::settle_sky(Wave& wave, Manifold<Wave>& manifold, size_t
   RefractedSight::Node from;
   from.place = path.origin - path.direction * path.claims.suffix().flown_m;
   from.time = path.time, from.draw = path.draw;
-  if (!(any > 0 && manifold.sight().is_first_through_sheet(from, path.direction, on.in, manifold.hero_of(path))))
-    path.claims.give_up_sky();
+  const bool looked_for =
+      any > 0 && manifold.sight().is_first_through_sheet(from, path.direction, on.in, manifold.hero_of(path));
+  if (looked_for) return;
+  path.claims.give_up_sky();
+  if constexpr (Wave::kWatched) wave.throughputs.take_other_way(wave.nodes[i].path);
 }
 
 }  // namespace suite

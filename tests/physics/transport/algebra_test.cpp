@@ -4,6 +4,8 @@
 
 #include "tests/support/radiometry_kit.h"
 #include "transport/estimators/standard.h"
+#include "transport/kernel_beside.h"
+#include "transport/kernel_fill.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"
