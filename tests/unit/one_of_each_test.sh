@@ -20,8 +20,8 @@ places() {
   sed 's/^/    /' <<<"$found"
   if [ "$n" -ne "$wanted" ]; then failed=1; echo "    ^ expected $wanted"; fi
 }
-places "roulette"            1 'std::clamp\(brightness / kCarries, kLeast, 1\.0\)' libs
-places "roulette's number"   1 'dimensions::roulette\(' libs
+places "roulette"            1 'std::clamp\(brightness / kCarries, kLeast, most\)' libs
+places "roulette's number"   1 'dimensions::of_roulette\(' libs
 places "shared density"      1 'other \* \(other / own\)' libs
 # The others: vertices that end where they sample (techniques/side_vertex.h, techniques/equiangular.h), and photons that count nothing themselves.
 places "questions to lights" 4 '(light|light->)(\.light)?->sample\(' libs/transport
