@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes a strip of ../valley into a folder: make_scene.py FOLDER
 
-From the town over the bridge and the river into the forest on the slope: ground, houses, cars, lamp posts and trees by the valley's own rules, planted
-anew. Needs Python 3 and its standard library only; a second.
+From the town over the bridge and the river into the forest on the slope: ground, houses, cars and lamp posts as there, trees by the same
+rules in other places. Needs Python 3 and its standard library only; a second.
 """
 import os
 import re
