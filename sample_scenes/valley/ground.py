@@ -184,7 +184,7 @@ class Cover:
         return out
 
     def _paint(self, x0, y0, x1, y1, kind, over=None):
-        i0, i1 = max(0, round((x0 - WEST) / PIXEL)), min(self.columns, round((x1 - WEST) / PIXEL))
+        i0, i1 = max(0, round((x0 - WEST) / PIXEL)), max(0, min(self.columns, round((x1 - WEST) / PIXEL)))
         for j in range(max(0, round((NORTH - y1) / PIXEL)), min(self.rows, round((NORTH - y0) / PIXEL))):
             row = self.map[j]
             if over is None:
