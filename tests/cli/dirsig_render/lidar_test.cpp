@@ -239,6 +239,39 @@ TEST_F(Lidar, Presets) {
   EXPECT_THAT(run("--lidar-preset vlp_61").err, HasSubstr("did you mean 'vlp_16'"));
 }
 
+// Satellites move on by some 20 m while a pulse is under way: receivers of presets are aligned with where it comes
+// back.
+TEST_F(Lidar, PresetsInOrbitSeeTheirOwnFootprint) {
+  write_file(folder_ / "wide.yaml", R"(scene: 1
+name: wide
+windows_um: [[0.5, 1.1]]
+materials: {ground: {model: lambert, reflectance: 0.3}}
+objects: {ground: {plane: {width: 2000, depth: 2000}, material: ground}}
+world: [{place: ground}]
+)");
+  ASSERT_EQ(run_command("cd '" + folder_.path() + "' && " SUITE_BIN_DIR "/scene-prep wide.yaml -o wide.h5 -q").code, 0);
+  const auto photons = [&](const std::string& name, const std::string& with) {
+    const CommandResult r = run(
+        "p.yaml -q -o " + name +
+        " --set 'sensors.0.tasks=[{start: 0, pulses: 4}]' --set sensors.0.orders=1 --set sensors.0.paths=64 " + with);
+    EXPECT_EQ(r.code, 0) << r.err;
+    double sum = 0;
+    ResponseReader(folder_ / (name + "/" + name + "_response.h5")).for_each_block([&](const ResponseBlock& b) {
+      const size_t channels = b.entries() ? b.value.size() / b.entries() : 0;
+      for (size_t k = 0; k < b.entries(); ++k)
+        if (b.bin[k] > 0) sum += b.value[k * channels];  // of single scattering; bin 0 holds passive light
+    });
+    return sum;
+  };
+  for (const std::string name : {"gedi_like", "icesat2_like", "calipso_like"}) {
+    write_file(folder_ / "p.yaml", "scene: wide.h5\nsensors:\n" + run("--lidar-preset " + name).out);
+    const double all = photons(name, "--set sensors.0.receiver.field_of_view_mrad=0.5");
+    EXPECT_GT(photons(name, ""), 0.9 * all) << name;
+    EXPECT_LT(photons(name, "--set 'sensors.0.receiver.place={rotate_deg: [0, 0, 0]}'"), 0.85 * all)
+        << name << ", straight down";
+  }
+}
+
 // A survey of HELIOS++ over a plane: every shot comes back from it.
 TEST_F(Lidar, Survey) {
   write_file(folder_ / "s.xml", R"(<document>
