@@ -53,6 +53,8 @@ void silence() {
   static const herr_t no_work_at_exit = H5dont_atexit();  // before anything else of the library
   (void)no_work_at_exit;
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  // Lists of free pieces by size would hold some MiB in programs that open thousands of files; what is free goes back.
+  H5set_free_list_limits(0, 0, 0, 0, 0, 0);
 }
 
 namespace {
