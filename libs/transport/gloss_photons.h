@@ -5,7 +5,7 @@
 //
 // Assumes: rays are aimed at the balls around objects that have a material that is more than matte; what has no bounds
 // is none of them, and among more than 32,768 of them none is aimed at: too few photons would come from each.
-// Transmission through smooth interfaces is left to those who ask through them (refracted_sight.h).
+// Transmission through smooth interfaces is left to those who ask through them (refracted/sight.h).
 // Based on: H. W. Jensen, "Importance driven path tracing using the photon map", Rendering Techniques 1995.
 #pragma once
 #include <vector>

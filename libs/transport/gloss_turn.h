@@ -22,7 +22,7 @@ class GlossTurn {
   static constexpr double kNarrow = 1.5;
 
   // Of light that comes from `to`. Nothing where it ends, or passes a smooth interface, behind which others ask for it
-  // (refracted_sight.h). u: four numbers in [0, 1).
+  // (refracted/sight.h). u: four numbers in [0, 1).
   std::optional<Turn> draw(const ScatterModel& model, Dir to, const std::array<double, 4>& u);
   // Whether a material, as it is anywhere, may turn light narrowly: by some draws.
   bool is_glossy(const BakedMaterial& material);

@@ -4,6 +4,7 @@
 //   fly      along the ray that the tracer has answered, through what fills space (Space)
 //   meet     a surface, the Earth under the scene, or the outside; lights met by chance and warm matter contribute
 //   sample   the lights: next-event estimation, a shadow ray towards each sample
+//   look     for what their rays meet, and for ways to the light through what bends it
 //   resolve  visible samples contribute, weighted by MIS with continuations (shares.h)
 //   go on    draws the continuation, plays Russian roulette, ends paths
 // What the kernel and the techniques share is the wave (wave.h); the techniques that it holds are those of
@@ -66,9 +67,11 @@ class PathKernel final : public PathTracing {
     look_beside,
     arrive,
     look,
+    look_through,
     fly_aside,
     look_aside,
-    go_on
+    go_on,
+    settle
   } stage_ = Stage::leave;
   using Question = SightQuestion;
 
@@ -89,13 +92,15 @@ class PathKernel final : public PathTracing {
   }
   // kernel_light.h: next-event estimation.
   void sample_lights();
-  void resolve();
+  void look_through();
+  void resolve();  // hands contributions over
   SUITE_INLINE void shine(const Question& q, size_t ray, double passes);
   void lack(const Question& q, size_t ray, bool blocked);
   const float* spectrum_of(const Question& q, size_t ray);
   SUITE_INLINE double chance(const PathNode& node, Dir in, std::span<const double> reach) const;
   // kernel_go_on.h: continuations.
   void go_on();
+  void end_stage();
   SUITE_INLINE bool go_on(size_t i);
   bool go_on(size_t i, const Continuation& on);
   SUITE_INLINE bool draw(size_t i, Continuation& on);

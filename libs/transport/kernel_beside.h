@@ -152,11 +152,6 @@ TraceStatistics PathKernel<Wave>::take_statistics() {
   TraceStatistics all = wave_.space.take_statistics();
   const TraceStatistics touching = std::exchange(wave_.touching, {});
   all.rays += touching.rays, all.cycles += touching.cycles;
-  if constexpr (Techniques<Wave>::kModels)
-    if (techniques_.manifold.on()) {
-      const TraceStatistics ways = techniques_.manifold.sight().take_statistics();
-      all.rays += ways.rays, all.cycles += ways.cycles;
-    }
   return all;
 }
 

@@ -82,8 +82,12 @@ bool PathKernel<Wave>::next(TraceRequest& request) {
         break;
       case Stage::look:
         if (wave_.space.sight().next(request)) return true;
+        if (techniques_.manifold.on()) look_through();
+        stage_ = Stage::look_through;
+        break;
+      case Stage::look_through:
+        if (techniques_.manifold.next(wave_, techniques_.chains, techniques_.guide, request)) return true;
         resolve();
-        wave_.hand_over();
         stage_ = Stage::go_on;
         if (!techniques_.side.begin(wave_, request)) break;
         stage_ = Stage::fly_aside;
@@ -95,12 +99,15 @@ bool PathKernel<Wave>::next(TraceRequest& request) {
       case Stage::look_aside:
         if (wave_.space.sight().next(request)) return true;
         techniques_.side.answer(wave_);
-        wave_.hand_over();
         stage_ = Stage::go_on;
         break;
       case Stage::go_on:
         go_on();
-        first_stage_ = false;
+        stage_ = Stage::settle;
+        break;
+      case Stage::settle:
+        if (techniques_.chains.next_settled(wave_, techniques_.manifold, request)) return true;
+        end_stage();
         stage_ = Stage::leave;
         break;
     }

@@ -23,17 +23,27 @@ void PathKernel<Wave>::go_on() {
   for (size_t i = 0; i < wave_.nodes.size(); ++i)
     if (go_on(i)) active_[n++] = wave_.nodes[i].path;
   active_.resize(n);
-  if (techniques_.splitting.on()) techniques_.splitting.take_up_ended(wave_, in_stage_, active_);
-  techniques_.residual.go_back(wave_, in_stage_, active_);
 }
 
-// One path; false when it ends here.
+// Those that had to wait go on, and ended ones are taken up again.
+template <class Wave>
+void PathKernel<Wave>::end_stage() {
+  techniques_.chains.go_on_settled([&](size_t i, const Continuation& on) {
+    if (!go_on(i, on)) std::erase(active_, wave_.nodes[i].path);
+  });
+  if (techniques_.splitting.on()) techniques_.splitting.take_up_ended(wave_, in_stage_, active_);
+  techniques_.residual.go_back(wave_, in_stage_, active_);
+  first_stage_ = false;
+}
+
+// One path; false when it ends here. One that has to wait goes on when the stage ends.
 template <class Wave>
 bool PathKernel<Wave>::go_on(size_t i) {
   wave_.records[wave_.nodes[i].path].end = PathEnd::absorbed;
   if (techniques_.splitting.on()) branch(i);
   Continuation on;
-  return draw(i, on) && go_on(i, on);
+  if (!draw(i, on)) return false;
+  return techniques_.chains.settle(wave_, techniques_.manifold, i, on) || go_on(i, on);
 }
 
 template <class Wave>
@@ -97,7 +107,6 @@ bool PathKernel<Wave>::draw(size_t i, Continuation& on) {
   auto& guide = techniques_.guide;
   using Guide = std::remove_reference_t<decltype(guide)>;
   if (guide.guides(wave_, node) && on.branch == Branch::none) guide.share(wave_, node, Guide::Way::own, on);
-  techniques_.chains.settle_sky(wave_, techniques_.manifold, i, on);
   return true;
 }
 

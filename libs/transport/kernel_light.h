@@ -87,9 +87,18 @@ void PathKernel<Wave>::connect(const PathNode& node, const SampledLight& light, 
   wave_.sight_rays.add(distance, !light.nature.wide).set(origin, direction, path.time, path.draw);
 }
 
+// What techniques look for through smooth interfaces, once shadow rays are known.
+template <class Wave>
+void PathKernel<Wave>::look_through() {
+  techniques_.manifold.look(wave_, techniques_.chains, techniques_.guide);
+  const std::span<const uint8_t> blocked = wave_.sight_rays.blocked();
+  for (size_t i = 0; wave_.lost && i < blocked.size(); ++i)
+    if (blocked[i] && !questions_[i].wide && wave_.space.sight().passes(i) > 0)
+      techniques_.manifold.want_lost(wave_, questions_[i], i);
+}
+
 template <class Wave>
 void PathKernel<Wave>::resolve() {
-  techniques_.manifold.answer(wave_, techniques_.chains, techniques_.guide);
   const std::span<const uint8_t> blocked = wave_.sight_rays.blocked();
   for (size_t i = 0; i < blocked.size(); ++i) {
     const Question& q = questions_[i];
@@ -108,6 +117,7 @@ void PathKernel<Wave>::resolve() {
     }
     if (!behind_earth) shine(q, i, passes);
   }
+  wave_.hand_over();
 }
 
 // Density with which continuations are drawn towards `in` and get as far as the light, over all hero wavelengths.

@@ -8,7 +8,7 @@
 // light gives back by filling less solid angle. That is what really arrives where flat interfaces lie parallel to the
 // surface that is lit, because the flux through them is; elsewhere it is as large as light that is bent, but arrives
 // somewhere else (caustics, total reflection). What interfaces reflect to and fro between them comes to that, where
-// light is asked for through them (RefractedSight::unfound).
+// light is asked for through them (refracted/unfound.h).
 //
 // The estimate is no part of the radiance. It makes the standard error larger and flags the problem
 // (Accumulators::shortfall, quality_unresolved). Light that a mirror sends, also that of a refracting surface, is not

@@ -29,7 +29,7 @@ struct PipelineOptions {
   uint32_t max_scatterings = 0;   // the same inside media, beside the nodes
   int roulette_after = 3;         // events before paths may end by chance
   bool explicit_sources = true;   // ask lights at every node (off only for comparisons)
-  bool refracted_sources = true;  // ask lights through smooth interfaces, too (refracted_sight.h)
+  bool refracted_sources = true;  // ask lights through smooth interfaces, too (refracted/sight.h)
   bool volume_chains = true;      // and along chains of scatterings (techniques/volume_chains.h; off for comparisons)
   bool side_flights =
       true;  // flights aside in media that scatter forwards (techniques/side_vertex.h; off for comparisons)

@@ -49,7 +49,7 @@ struct KernelContext {
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.
 bool may_lose(const KernelContext& context);
-// Whether light is asked for through smooth interfaces (refracted_sight.h): there are both.
+// Whether light is asked for through smooth interfaces (refracted/sight.h): there are both.
 bool refracts(const KernelContext& context);
 // Of a light: whether it is one that is.
 inline bool is_refracted(const LightNature& light) { return light.placed || (light.far && light.drawn && !light.wide); }

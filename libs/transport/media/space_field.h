@@ -123,9 +123,9 @@ class FieldSpace {
   // Events like those of scatter(): the mean of what fills `length` m of such a ray; what fills the place come to.
   uint32_t mean_of_way(const Ray& ray, double length);
   uint32_t stand_on_way();
-  // Keeps where the way has come to, and goes back there.
-  void hold_way() { held_ = way_; }
-  void resume_way() { way_ = held_; }
+  // Where the way has come to, and going back there.
+  const MediumStack& way() const { return way_; }
+  void resume_way(const MediumStack& way) { way_ = way; }
   void cross_way(const Hit& hit, uint32_t material, Dir in) { bodies_.transmit(way_, hit, material, in, statistics_); }
   TraceStatistics take_statistics();
 
@@ -194,7 +194,7 @@ class FieldSpace {
   std::vector<Way> ways_;
   std::vector<ScatterPlace> events_;  // of paths, of their side flights, and two of the way
   std::vector<float> phase_;
-  MediumStack way_, held_;     // that interfaces bend, as it stands
+  MediumStack way_;            // that interfaces bend, as it stands
   std::vector<Layer> layers_;  // on the last free_way()
   std::vector<double> depths_;
   TraceStatistics statistics_;  // of short rays at boundaries

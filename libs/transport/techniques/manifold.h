@@ -1,4 +1,4 @@
-// Manifold next-event estimation (MNEE): lights behind smooth interfaces (refracted_sight.h).
+// Manifold next-event estimation (MNEE): lights behind smooth interfaces (refracted/sight.h).
 //
 // Every node asks far lights that are small, and a place on one of the lamps, for all ways through such interfaces,
 // whatever the straight line towards the light meets, and claims their light (path/claims.h). The light comes
@@ -7,11 +7,14 @@
 //     x |d(direction) / d(direction at a far light)|  x  radiance over its density, or irradiance;
 //     x |d(direction) / d(m2 across the way at a lamp)|  x  radiance x cosine over the density of places, or intensity.
 // That a point's light spreads so follows from its radiance being that of a small surface.
+// All nodes of a stage look beside each other, each for one light after the other: their searches ask for rays
+// together (refracted/searches.h), and what a path is given comes in the same order as if it were alone.
 #pragma once
 #include <algorithm>
 #include <cmath>
 
-#include "transport/refracted_sight.h"
+#include "transport/refracted/searches.h"
+#include "transport/refracted/unfound.h"
 #include "transport/techniques/suffix_throughput.h"
 
 namespace suite {
@@ -26,6 +29,14 @@ struct RefractedQuestion {
   const float* spectrum;  // far
   size_t member;          // a point
   bool sky = false;       // the air's
+  uint32_t next = kNone;  // of the node
+};
+
+// What becomes of a chain of scatterings that was to begin where a way has been found (techniques/volume_chains.h).
+enum class ChainLook : uint8_t {
+  none,   // chains do not bring the light of the node
+  ends,   // they do, but this one leads nowhere
+  looks,  // the light is to be looked for from its end
 };
 
 template <class Wave>
@@ -56,19 +67,24 @@ class Manifold {
   // Whether ways of a hero wavelength stand for some that an interface on the path has not parted it from.
   bool is_alive(const Wave& wave, const Path& path, size_t knot) const;
 
-  void begin() { questions_.clear(); }
+  void begin() { questions_.clear(), unfound_.clear(); }
   // A sample of a far light; and a place on a lamp for every node.
   void want(const Wave& wave, const PathNode& node, const SampledLight& light, const LightSample& sample);
   void want_places(const Wave& wave);
-  // Makes the contributions of the stage. Chains and guides begin where a way has been found.
+  // Of ray i of the stage's shadow rays, which smooth surfaces stop: the share of its light that is not found through
+  // them is to be known.
+  void want_lost(const Wave& wave, const SightQuestion& q, size_t ray);
+  // All has been wanted. Chains and guides begin where a way is found.
   template <class Chains, class Guide>
-  void answer(Wave& wave, Chains& chains, Guide& guide);
-  // Of light that smooth surfaces stop on its straight way: the share that is lost there, having not been looked for
-  // through them. passes: what they pass.
+  void look(Wave& wave, Chains& chains, Guide& guide);
+  // The next request, to be served before the next call; false when all contributions have been made.
+  template <class Chains, class Guide>
+  bool next(Wave& wave, Chains& chains, Guide& guide, TraceRequest& request);
+  // The share of the light of such a ray that is lost. passes: what smooth surfaces on its straight way pass.
   double lost(const Wave& wave, const SightQuestion& q, size_t ray, double passes);
 
   // For chains.
-  RefractedSight::Node from_node(const Wave& wave, const PathNode& node) const;
+  WayStart from_node(const Wave& wave, const PathNode& node) const;
   struct Reached {   // the beginning of a way
     double arrival;  // m, optical, from the node
     double scale;
@@ -87,8 +103,23 @@ class Manifold {
     double scale;
     const float* spectrum;
   };
+  // What a node looks for: its questions at one knot after the other, then the sky through chains.
+  struct Asking {
+    enum class For : uint8_t { next, light, chain, sky, nothing } what = For::next;
+    uint32_t node;
+    uint32_t question;             // that is next or under way; kNone: there are no more
+    size_t knot = 0;               // that is next
+    uint32_t chain = 0, last = 0;  // that is under way; the end of those of the sky
+  };
+  bool loses(const Wave& wave, const SightQuestion& q) const;
   template <class Chains, class Guide>
-  void answer(Wave& wave, const RefractedQuestion& q, size_t knot, Chains& chains, Guide& guide);
+  bool advance(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s, Hit* hit);
+  template <class Chains>
+  bool look_for_next(Wave& wave, Chains& chains, Asking& a, RefractedSearch& s);
+  bool looks_for(Wave& wave, const RefractedQuestion& q, size_t knot);
+  bool look_for(const Wave& wave, const RefractedQuestion& q, size_t knot, RefractedSearch& s);
+  template <class Chains, class Guide>
+  bool shine(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s);
   // Follows a way that has been begun; arrival: its optical length is added. False: nothing is left of its light.
   bool follow(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky,
               SuffixThroughput<Wave>& suffix, double& arrival);
@@ -96,6 +127,9 @@ class Manifold {
 
   std::unique_ptr<RefractedSight> sight_;  // null where nothing refracts
   std::vector<RefractedQuestion> questions_;
+  std::vector<Asking> askings_;  // of the stage's nodes
+  RefractedSearches searches_;   // theirs
+  UnfoundLight unfound_;
 };
 
 // Where no surface refracts without roughness.
@@ -110,8 +144,13 @@ class NoManifold {
   void begin() {}
   void want(const Wave&, const PathNode&, const SampledLight&, const LightSample&) {}
   void want_places(const Wave&) {}
+  void want_lost(const Wave&, const SightQuestion&, size_t) {}
   template <class Chains, class Guide>
-  void answer(Wave&, Chains&, Guide&) {}
+  void look(Wave&, Chains&, Guide&) {}
+  template <class Chains, class Guide>
+  bool next(Wave&, Chains&, Guide&, TraceRequest&) {
+    return false;
+  }
   double lost(const Wave&, const SightQuestion&, size_t, double passes) { return passes; }
 };
 
@@ -157,172 +196,137 @@ void Manifold<Wave>::want_places(const Wave& wave) {
 }
 
 template <class Wave>
+bool Manifold<Wave>::loses(const Wave& wave, const SightQuestion& q) const {
+  return sight_ && q.light != kFromAir && is_refracted(wave.environment.lights[q.light]->nature()) &&
+         !wave.in_air(wave.nodes[q.node]);
+}
+
+template <class Wave>
+void Manifold<Wave>::want_lost(const Wave& wave, const SightQuestion& q, size_t ray) {
+  if (loses(wave, q)) unfound_.want(ray, wave.sight_rays.rays()[ray], wave.sight_rays.distance()[ray]);
+}
+
+template <class Wave>
 double Manifold<Wave>::lost(const Wave& wave, const SightQuestion& q, size_t ray, double passes) {
-  if (!sight_ || q.light == kFromAir || !is_refracted(wave.environment.lights[q.light]->nature())) return passes;
-  if (wave.in_air(wave.nodes[q.node])) return passes;
-  return sight_->unfound(wave.sight_rays.rays()[ray], wave.sight_rays.distance()[ray]).value_or(passes);
+  return loses(wave, q) ? unfound_.share(ray).value_or(passes) : passes;
 }
 
 template <class Wave>
 template <class Chains, class Guide>
-void Manifold<Wave>::answer(Wave& wave, Chains& chains, Guide& guide) {
+void Manifold<Wave>::look(Wave& wave, Chains& chains, Guide& guide) {
   if (!sight_) return;
   chains.begin(wave), guide.begin(wave);
-  for (const RefractedQuestion& q : questions_) {
-    const Path& path = wave.paths[wave.nodes[q.node].path];
-    const Suffix behind = path.claims.behind_interface(false);
-    for (size_t k = 0; k < wave.knots(); ++k) {
-      if (!is_alive(wave, path, k)) continue;
-      const ClaimedLight light{ClaimedLight::Kind::small, q.light};
-      // Chains that began before this scattering bring it.
-      if (owner(path.claims.all(), behind, light, k) == Technique::volume_chains) continue;
-      if constexpr (Wave::kWatched) wave.throughputs.ask(wave.nodes[q.node].path, Technique::manifold, light, k);
-      answer(wave, q, k, chains, guide);
-    }
-  }
-  for (const PathNode& node : wave.nodes) chains.sample_sky(wave, *this, node);
-}
-
-template <class Wave>
-void Manifold<Wave>::keep_bins_of(const Wave& wave, size_t knot, SuffixThroughput<Wave>& suffix) const {
-  const std::vector<size_t>& set = sight_->interfaces().set_of();
-  for (size_t i = 0; i < wave.bins; ++i)
-    suffix.spectrum()[i] *= set[static_cast<size_t>(wave.heroes.of_bin[i])] == knot ? 1.0f : 0.0f;
-}
-
-template <class Wave>
-bool Manifold<Wave>::follow(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky,
-                            SuffixThroughput<Wave>& suffix, double& arrival) {
-  Ray ray{way.origin, way.direction, path.time, path.draw};
-  for (int i = 0; i < way.events; ++i) {
-    const RefractedEvent& at = way.at[i];
-    if (wave.contacts.covers(ray, at.hit, wave.touching)) return false;
-    arrival += at.length * suffix.follow(ray, at.length);
-    suffix.meet(at, sight_->interfaces().lobe(at.material, at.reflected), knot, path.time);
-    if (!at.reflected) wave.space.cross_way(at.hit, at.material, at.in);
-    ray.origin = wave.surface.tracer().leave(at.hit, at.in);
-    ray.direction = at.in;
-  }
-  if (wave.is_behind_earth(ray, way.length)) return false;
-  if (sky) return true;
-  const double delay = suffix.follow(ray, way.length);
-  if (std::isfinite(way.length)) arrival += way.length * delay;  // far lights shine evenly in time
-  return std::ranges::any_of(suffix.spectrum(), [](float t) { return t != 0; });
-}
-
-template <class Wave>
-RefractedSight::Node Manifold<Wave>::from_node(const Wave& wave, const PathNode& node) const {
-  const uint32_t p = node.path;
-  const Path& path = wave.paths[p];
-  RefractedSight::Node from;
-  from.time = path.time, from.draw = path.draw;
-  if (node.event) {
-    if constexpr (Wave::Space::kScatters) from.place = wave.space.place(p);
-  } else {
-    const Hit& hit = wave.hits[node.slot];
-    const LightReceiver at = wave.surfaces.receiver(p, hit, -path.direction);
-    from.place = hit.position;
-    from.hit = &hit;
-    if (!at.two_sided) from.side = dot(path.direction, hit.normal) < 0 ? hit.normal : -hit.normal;
-  }
-  return from;
+  askings_.resize(wave.nodes.size());
+  searches_.clear();
+  for (uint32_t i = 0; i < askings_.size(); ++i) askings_[i] = {.node = i, .question = kNone}, searches_.add();
+  for (uint32_t i = static_cast<uint32_t>(questions_.size()); i-- > 0;)
+    questions_[i].next = std::exchange(askings_[questions_[i].node].question, i);
 }
 
 template <class Wave>
 template <class Chains, class Guide>
-void Manifold<Wave>::answer(Wave& wave, const RefractedQuestion& q, size_t knot, Chains& chains, Guide& guide) {
-  const PathNode& node = wave.nodes[q.node];
-  const Path& path = wave.paths[node.path];
-  constexpr uint64_t kPurpose = 0x62656e74;
-  const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
-  std::optional<RefractedWay> first;
-  for (const RefractedWay& way : sight_->find(from_node(wave, node), q.end, knot, seed))
-    if (shine_along(wave, way, q, knot) && !first) first = way;
-  if (first && !chains.sample(wave, *this, q, first->direction, first->at[0].length, knot)) guide.find(wave, q, *first);
+bool Manifold<Wave>::next(Wave& wave, Chains& chains, Guide& guide, TraceRequest& request) {
+  if (!sight_) return false;
+  const auto on = [&](uint32_t i, RefractedSearch& s, Hit* hit) {
+    return advance(wave, chains, guide, askings_[i], s, hit);
+  };
+  return searches_.next(request, on) || unfound_.next(*sight_, request);
 }
 
+// Takes a node on until it waits for a ray, or looks for nothing any more: false.
 template <class Wave>
-bool Manifold<Wave>::shine_along(Wave& wave, const RefractedWay& way, const RefractedQuestion& q, size_t knot) {
-  const PathNode& node = wave.nodes[q.node];
-  const uint32_t p = node.path;
-  const Path& path = wave.paths[p];
-  if (!node.event && !wave.surfaces.takes(p, wave.hits[node.slot], -path.direction, way.direction)) return false;
-  SuffixThroughput<Wave> suffix(wave, wave.dense(p, 2));
-  suffix.leave(node, way.direction);
-  keep_bins_of(wave, knot, suffix);
-  wave.space.begin_way(p, node.event, wave.hits[node.slot], node.event ? kNone : wave.surfaces.material(p),
-                       -path.direction, way.direction);
-  return shine_behind(wave, way, q, knot, {0, 1, 0, way.direction}, suffix);
-}
-
-template <class Wave>
-bool Manifold<Wave>::shine_behind(Wave& wave, const RefractedWay& way, const RefractedQuestion& q, size_t knot,
-                                  const Reached& reached, SuffixThroughput<Wave>& suffix) {
-  const PathNode& node = wave.nodes[q.node];
-  const uint32_t p = node.path;
-  const Path& path = wave.paths[p];
-  const auto most = static_cast<uint32_t>(wave.options.max_nodes);
-  if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return false;
-  double arrival = reached.arrival;
-  if (!follow(wave, path, way, knot, q.sky, suffix, arrival)) return false;
-  const auto from_light = sent(wave, q, way);
-  if (!from_light) return false;
-  WaterSeen water = WaterSeen::nothing;
-  if (wave.waters.any()) {
-    water = wave.water_behind(node, reached.first);
-    if (reached.scatterings > 0) water = Waters::behind_scattering(water);
-    for (int i = 0; i < way.events; ++i)
-      water = wave.waters.behind_surface(water, way.at[i].material, way.at[i].hit.normal, way.at[i].out, way.at[i].in);
-    if (water == WaterSeen::mirrored && !q.end.far) water = WaterSeen::other;
-  }
-  for (const bool doubtful : {false, true}) {
-    if (doubtful && !way.doubtful) break;
-    Contribution& c = wave.contribution(p, q.light);
-    c.events |= by_surface | by_dirac;
-    if (node.event || reached.scatterings > 0) c.events |= by_medium;
-    c.asked = !q.sky;
-    c.beam = q.beam;
-    c.water = water;
-    c.order += static_cast<uint32_t>(way.events) + reached.scatterings;
-    c.smooth += static_cast<uint32_t>(way.events);
-    c.scale = static_cast<float>(from_light->scale * way.spreading * way.trials * reached.scale);
-    c.radiance = from_light->spectrum;
-    c.arrival += arrival;
-    if (doubtful) c.missed = 0;  // there may be as much again
-    suffix.contribute(c);
+template <class Chains, class Guide>
+bool Manifold<Wave>::advance(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s, Hit* hit) {
+  using For = typename Asking::For;
+  bool waits = hit && sight_->step(s, *hit);
+  while (!waits) {
+    switch (a.what) {
+      case For::next:
+        waits = look_for_next(wave, chains, a, s);
+        break;
+      case For::light:
+        waits = shine(wave, chains, guide, a, s);
+        break;
+      case For::chain:
+        chains.shine(wave, *this, a.chain, s.all());
+        a.what = For::next;
+        break;
+      case For::sky:
+        chains.shine(wave, *this, a.chain, s.all());
+        a.what = ++a.chain < a.last ? For::sky : For::nothing;
+        if (a.what == For::sky) waits = chains.look(wave, *this, a.chain, s);
+        break;
+      case For::nothing:
+        return false;
+    }
   }
   return true;
 }
 
-// What a light sends along a way, per solid angle there; of a lamp per m2 across the way, over the density of the
-// place.
+// Begins the next search of a node.
 template <class Wave>
-auto Manifold<Wave>::sent(Wave& wave, const RefractedQuestion& q, const RefractedWay& way) -> std::optional<Sent> {
+template <class Chains>
+bool Manifold<Wave>::look_for_next(Wave& wave, Chains& chains, Asking& a, RefractedSearch& s) {
+  using For = typename Asking::For;
+  while (a.question != kNone) {
+    const RefractedQuestion& q = questions_[a.question];
+    for (; a.knot < wave.knots(); ++a.knot) {
+      if (!looks_for(wave, q, a.knot)) continue;
+      a.what = For::light;
+      return look_for(wave, q, a.knot++, s);
+    }
+    a.question = q.next, a.knot = 0;
+  }
+  a.last = chains.draw_sky(wave, *this, wave.nodes[a.node], a.chain);
+  a.what = a.chain < a.last ? For::sky : For::nothing;
+  return a.what == For::sky && chains.look(wave, *this, a.chain, s);
+}
+
+// Whether a question is the manifold's at a knot.
+template <class Wave>
+bool Manifold<Wave>::looks_for(Wave& wave, const RefractedQuestion& q, size_t knot) {
+  const Path& path = wave.paths[wave.nodes[q.node].path];
+  if (!is_alive(wave, path, knot)) return false;
+  const ClaimedLight light{ClaimedLight::Kind::small, q.light};
+  // Chains that began before this scattering bring it.
+  if (owner(path.claims.all(), path.claims.behind_interface(false), light, knot) == Technique::volume_chains)
+    return false;
+  if constexpr (Wave::kWatched) wave.throughputs.ask(wave.nodes[q.node].path, Technique::manifold, light, knot);
+  return true;
+}
+
+template <class Wave>
+bool Manifold<Wave>::look_for(const Wave& wave, const RefractedQuestion& q, size_t knot, RefractedSearch& s) {
+  constexpr uint64_t kPurpose = 0x62656e74;
   const PathNode& node = wave.nodes[q.node];
-  if (q.sky) {
-    const std::span<float> own = wave.throughputs.take(node.path);
-    return Sent{q.scale, wave.space.sky_behind({way.last, way.to, 0}, wave.transmission, own)};
+  const Path& path = wave.paths[node.path];
+  const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
+  return sight_->begin(s, from_node(wave, node), q.end, knot, seed);
+}
+
+// What has been found shines; a chain or a guide may begin with it. Whether the search of a chain waits.
+template <class Wave>
+template <class Chains, class Guide>
+bool Manifold<Wave>::shine(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s) {
+  using For = typename Asking::For;
+  const RefractedQuestion& q = questions_[a.question];
+  const size_t knot = a.knot - 1;
+  const RefractedWay* first = nullptr;
+  for (const RefractedWay& way : s.all())
+    if (shine_along(wave, way, q, knot) && !first) first = &way;
+  a.what = For::next;
+  if (!first) return false;
+  switch (chains.sample(wave, *this, q, first->direction, first->at[0].length, knot, a.chain)) {
+    case ChainLook::none:
+      guide.find(wave, q, *first);
+      break;
+    case ChainLook::ends:
+      break;
+    case ChainLook::looks:
+      a.what = For::chain;
+      return chains.look(wave, *this, a.chain, s);
   }
-  const Light& light = *wave.environment.lights[q.light];
-  const double when = wave.time(node);
-  if (q.end.far) {
-    if (q.spectrum) return Sent{q.scale, q.spectrum};
-    const std::span<float> own = wave.throughputs.take(node.path);  // its shape changes with direction
-    std::fill(own.begin(), own.end(), 0.0f);
-    light.add(q.end.direction, when, 1, own);
-    return Sent{q.scale, own.data()};
-  }
-  if (q.end.surface) {
-    if (!light.draws(way.lamp)) return std::nullopt;
-    const double cosine = -dot(way.to, way.lamp.normal);
-    const auto met = light.met_surface(wave.receiver(node), way.lamp, wave.surface.material(way.lamp), way.to,
-                                       way.length, cosine, when);
-    if (!met) return std::nullopt;
-    return Sent{q.scale * met->scale * std::fabs(cosine), met->spectrum};
-  }
-  const auto sample = light.sample_member(q.member, 1, {way.last, {}, true}, {}, when);
-  if (!sample) return std::nullopt;
-  return Sent{q.scale * sample->scale * sample->distance * sample->distance, sample->spectrum};
+  return false;
 }
 
 template <class Wave>

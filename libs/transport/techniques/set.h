@@ -8,9 +8,11 @@
 #include "transport/techniques/equiangular.h"
 #include "transport/techniques/forward_guide.h"
 #include "transport/techniques/manifold.h"
+#include "transport/techniques/manifold_ways.h"
 #include "transport/techniques/side_vertex.h"
 #include "transport/techniques/splitting.h"
 #include "transport/techniques/volume_chains.h"
+#include "transport/techniques/volume_chains_sky.h"
 
 namespace suite {
 

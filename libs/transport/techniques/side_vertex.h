@@ -228,6 +228,7 @@ void SideVertex<Wave>::answer(Wave& wave) {
   for (size_t i = 0; i < count_; ++i)
     if (!blocked[i] && !wave.is_behind_earth(wave.sight_rays.rays()[i], wave.sight_rays.distance()[i]))
       shine(wave, sides_[i], i, spectrum_of(wave, i));
+  wave.hand_over();
 }
 
 template <class Wave>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "transport/refracted_sight.h"
+#include "transport/refracted/way.h"
 #include "transport/wave.h"
 
 namespace suite {

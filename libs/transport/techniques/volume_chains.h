@@ -33,6 +33,7 @@
 
 #include "light/sky_through_water.h"
 #include "transport/chain_laws.h"
+#include "transport/media/medium_stack.h"
 #include "transport/techniques/manifold.h"
 
 namespace suite {
@@ -45,23 +46,35 @@ class VolumeChains {
   void prepare(const Wave& wave, bool splits) {
     on_ = splits && wave.options.volume_chains && wave.options.explicit_sources;
   }
-  void begin(const Wave& wave) { claims_.assign(wave.nodes.size(), {}); }
+  void begin(const Wave& wave) { claims_.assign(wave.nodes.size(), {}), held_ = 0; }
   // What chains of a node claim; null: there are none.
   const NodeClaims* claims(const Wave& wave, const PathNode& node) const {
     return claims_.empty() ? nullptr : &claims_[wave.number_of(node)];
   }
   // A chain to the light of the question, to which a way has been found `toward` a direction, of `length` m in the
-  // matter beside the node. Whether the light has been looked for so.
-  bool sample(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, Dir toward, double length, size_t knot);
+  // matter beside the node. Where it looks for the light, its number is returned, too.
+  ChainLook sample(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, Dir toward, double length,
+                   size_t knot, uint32_t& chain);
   // The light of the air's sky, which otherwise only chance would find, in one direction: unscattered and along a
-  // chain.
-  void sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node);
+  // chain. Numbers from `first` on to what is returned.
+  uint32_t draw_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node, uint32_t& first);
+  // Begins the search for the light of a chain from its last place (RefractedSight::begin); and takes what it has
+  // found.
+  bool look(const Wave& wave, Manifold<Wave>& manifold, uint32_t chain, RefractedSearch& s) const;
+  void shine(Wave& wave, Manifold<Wave>& manifold, uint32_t chain, std::span<const RefractedWay> ways);
   // Whether a continuation goes through the smooth interface of node i to light of the air's sky that chains may bring;
   bool passes_into_claimed_sky(const Wave& wave, const Manifold<Wave>& manifold, size_t i,
                                const Continuation& on) const;
-  // and gives up the claim on such light where chains look for another way through the interface than the path's, or
-  // for none.
-  void settle_sky(Wave& wave, Manifold<Wave>& manifold, size_t i, const Continuation& on) const;
+  // if it does, it waits, and true is returned: the claim on such light is given up where chains look for another way
+  // through the interface than the path's, or for none. next_settled(): the next request, to be served before the next
+  // call; false when all of them are settled, which then go on.
+  bool settle(const Wave& wave, Manifold<Wave>& manifold, size_t i, const Continuation& on);
+  bool next_settled(Wave& wave, Manifold<Wave>& manifold, TraceRequest& request);
+  template <class GoOn>
+  void go_on_settled(const GoOn& go_on) {
+    for (const Settling& s : settling_) go_on(s.node, s.on);
+    settling_.clear(), settling_searches_.clear();
+  }
 
  private:
   static constexpr int kMostLinks = 24;
@@ -84,30 +97,43 @@ class VolumeChains {
   ClaimCone cone_of(const Wave& wave, const Manifold<Wave>& manifold, const PathNode& node, uint16_t light,
                     size_t knot) const;
   Ray ray_from(const Wave& wave, const PathNode& node, Dir toward) const;
-  // Goes to its places; false where it meets what it cannot pass.
+  // What remains of a chain of a question that has come to its last place, or of the sky seen from the node itself.
+  struct Held {
+    RefractedQuestion question;
+    size_t knot;
+    uint32_t links;             // 0: from the node
+    Vec3 place;                 // the last one
+    Dir first, last;            // from the node; to the last place
+    double density;             // of that direction
+    double scale, arrival;      // Manifold::Reached
+    MediumStack way;            // of the space, there
+    std::vector<float> suffix;  // what the node and all links but the last make of the light
+    typename Wave::Matrices matrices;
+  };
+  Held& hold(const RefractedQuestion& q, size_t knot);
+  // Goes to its places and holds it; false where it meets what it cannot pass.
   bool follow_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, size_t knot);
   // By what scattering i of the chain is put on its way of `most` m, at knot k.
   LinkPlace link_place(const Wave& wave, const Manifold<Wave>& manifold, const RefractedQuestion& q, size_t i,
                        double most, size_t k) const;
-  // Link i of the chain, where its way has come to, scatters light that comes from a direction.
-  void scatter_along(Wave& wave, size_t i, Dir from, SuffixThroughput<Wave>& suffix) const {
-    suffix.scatter(wave.space.stand_on_way(), -chain_.toward[i], from, chain_.density[i]);
-  }
-  // Looks for the light from the last place.
-  bool shine_behind_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, size_t knot, Vec3 place,
-                          double scale, double arrival);
   // How far along a ray a flight of the chain may reach, m: to the next surface, or to where a path that meets none has
   // left the body around it, which has a hole.
   double free_way(Wave& wave, const Ray& ray);
-  void sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node, size_t knot, const SkyThroughWater& sky,
-                  Dir to, double deep, uint32_t mean);
+  void draw_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node, size_t knot, const SkyThroughWater& sky,
+                Dir to, double deep, uint32_t mean);
+  struct Settling {  // a continuation that waits
+    size_t node;
+    Continuation on;
+  };
+  bool begin_settling(const Wave& wave, Manifold<Wave>& manifold, const Settling& of, RefractedSearch& s) const;
 
   bool on_ = false;
   std::vector<NodeClaims> claims_;  // of nodes; empty where nothing refracts
   Chain chain_;
-  // What the node and all links but the last make of the light.
-  std::vector<float> through_;
-  typename Wave::Matrices matrices_;
+  std::vector<Held> chains_;  // the first held_ of them; the others keep their memory
+  uint32_t held_ = 0;
+  std::vector<Settling> settling_;
+  RefractedSearches settling_searches_;
 };
 
 // Where media do not scatter paths.
@@ -118,42 +144,61 @@ class NoVolumeChains {
   void begin(const Wave&) {}
   const NodeClaims* claims(const Wave&, const PathNode&) const { return nullptr; }
   template <class M>
-  bool sample(Wave&, M&, const RefractedQuestion&, Dir, double, size_t) {
+  ChainLook sample(Wave&, M&, const RefractedQuestion&, Dir, double, size_t, uint32_t&) {
+    return ChainLook::none;
+  }
+  template <class M>
+  uint32_t draw_sky(Wave&, M&, const PathNode&, uint32_t& first) {
+    return first;
+  }
+  template <class M>
+  bool look(const Wave&, M&, uint32_t, RefractedSearch&) const {
     return false;
   }
   template <class M>
-  void sample_sky(Wave&, M&, const PathNode&) {}
+  void shine(Wave&, M&, uint32_t, std::span<const RefractedWay>) {}
   template <class M>
   bool passes_into_claimed_sky(const Wave&, const M&, size_t, const Continuation&) const {
     return false;
   }
   template <class M>
-  void settle_sky(Wave&, M&, size_t, const Continuation&) const {}
+  bool settle(const Wave&, M&, size_t, const Continuation&) {
+    return false;
+  }
+  template <class M>
+  bool next_settled(Wave&, M&, TraceRequest&) {
+    return false;
+  }
+  template <class GoOn>
+  void go_on_settled(const GoOn&) {}
 };
 
 template <class Wave>
-bool VolumeChains<Wave>::sample(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, Dir toward,
-                                double length, size_t knot) {
+ChainLook VolumeChains<Wave>::sample(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q, Dir toward,
+                                     double length, size_t knot, uint32_t& number) {
   const PathNode& node = wave.nodes[q.node];
   const Path& path = wave.paths[node.path];
-  if (!on_ || !q.end.far || !wave.space.even_around(node.path)) return false;
-  if (path.claims.stands(Technique::volume_chains)) return false;
+  if (!on_ || !q.end.far || !wave.space.even_around(node.path)) return ChainLook::none;
+  if (path.claims.stands(Technique::volume_chains)) return ChainLook::none;
   const Dir normal = wave.hits[node.slot].normal;
-  if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
+  if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0)
+    return ChainLook::none;  // other matter is there
   NodeClaims& claims = claims_[q.node];
   constexpr auto kSmall = ClaimedLight::Kind::small;
-  if (const Claim* const claim = claims.of(kSmall); claim && claim->light != q.light) return false;
+  if (const Claim* const claim = claims.of(kSmall); claim && claim->light != q.light) return ChainLook::none;
   const uint32_t mean = mean_toward(wave, node, toward, length);
-  if (mean == kNone) return false;
+  if (mean == kNone) return ChainLook::none;
   if (!claims.of(kSmall))
     claims.add(Claim::chains(q.light, kMostLinks, RefractedWay::kMostEvents),
                cone_of(wave, manifold, node, q.light, knot), kReach * length);
   claims.add_hero(kSmall, knot);
   if constexpr (Wave::kWatched)
     wave.throughputs.ask(node.path, Technique::volume_chains, {kSmall, q.light}, knot, &claims);
-  if (draw_chain(wave, node, toward, length, mean, false) && claims.are_for(chain_.toward[0]))
-    follow_chain(wave, manifold, q, knot);
-  return true;
+  number = held_;
+  return draw_chain(wave, node, toward, length, mean, false) && claims.are_for(chain_.toward[0]) &&
+                 follow_chain(wave, manifold, q, knot)
+             ? ChainLook::looks
+             : ChainLook::ends;
 }
 
 template <class Wave>
@@ -216,8 +261,9 @@ bool VolumeChains<Wave>::follow_chain(Wave& wave, Manifold<Wave>& manifold, cons
     return false;
   const Hit& hit = wave.hits[node.slot];
   if (!node.event && !wave.surfaces.takes(p, hit, -path.direction, chain.toward[0])) return false;
-  through_.resize(wave.bins);
-  SuffixThroughput<Wave> suffix(wave, through_);
+  Held& held = hold(q, knot);
+  held.suffix.resize(wave.bins);
+  SuffixThroughput<Wave> suffix(wave, held.suffix);
   suffix.leave(node, chain.toward[0]);
   manifold.keep_bins_of(wave, knot, suffix);
   wave.space.begin_way(p, node.event, hit, node.event ? kNone : wave.surfaces.material(p), -path.direction,
@@ -245,11 +291,17 @@ bool VolumeChains<Wave>::follow_chain(Wave& wave, Manifold<Wave>& manifold, cons
     suffix.weaken(static_cast<float>(most / density));
     arrival += x * most * suffix.follow(ray, x * most);
     ray.origin += ray.direction * (x * most);
-    if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(wave, i, chain.toward[i + 1], suffix);
+    if (i + 1 < static_cast<size_t>(chain.links))
+      suffix.scatter(wave.space.stand_on_way(), -chain.toward[i], chain.toward[i + 1], chain.density[i]);
   }
-  matrices_.begin(suffix.matrices());
-  wave.space.hold_way();
-  return shine_behind_chain(wave, manifold, q, knot, ray.origin, 1 / chain.share.mean(wave.P()), arrival);
+  const auto last = static_cast<size_t>(chain.links - 1);
+  held.links = static_cast<uint32_t>(chain.links), held.place = ray.origin;
+  held.first = chain.toward[0], held.last = chain.toward[last], held.density = chain.density[last];
+  held.scale = 1 / chain.share.mean(wave.P()), held.arrival = arrival;
+  held.matrices.begin(suffix.matrices());
+  held.way = wave.space.way();
+  ++held_;
+  return true;
 }
 
 template <class Wave>
@@ -268,27 +320,47 @@ LinkPlace VolumeChains<Wave>::link_place(const Wave& wave, const Manifold<Wave>&
   return {depth - extinction * dot(chain_.toward[i], up) / rise * most, others};
 }
 
+// What is held counts from when it is complete.
 template <class Wave>
-bool VolumeChains<Wave>::shine_behind_chain(Wave& wave, Manifold<Wave>& manifold, const RefractedQuestion& q,
-                                            size_t knot, Vec3 place, double scale, double arrival) {
+auto VolumeChains<Wave>::hold(const RefractedQuestion& q, size_t knot) -> Held& {
+  if (held_ == chains_.size()) chains_.emplace_back();
+  Held& held = chains_[held_];
+  held.question = q, held.knot = knot, held.links = 0;
+  return held;
+}
+
+template <class Wave>
+bool VolumeChains<Wave>::look(const Wave& wave, Manifold<Wave>& manifold, uint32_t chain, RefractedSearch& s) const {
   constexpr uint64_t kPurpose = 0x636861696e;
+  const Held& held = chains_[chain];
+  const RefractedQuestion& q = held.question;
   const PathNode& node = wave.nodes[q.node];
-  const uint32_t p = node.path;
-  const Path& path = wave.paths[p];
-  const auto links = static_cast<uint32_t>(chain_.links);
-  RefractedSight::Node from;
-  from.place = place, from.time = path.time, from.draw = path.draw;
-  const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
-  const auto ways = q.sky ? manifold.sight().first_through_sheet(from, q.end.direction, knot)
-                          : manifold.sight().find(from, q.end, knot, seed);
+  const Path& path = wave.paths[node.path];
+  WayStart from;
+  from.place = held.place, from.time = path.time, from.draw = path.draw;
+  if (q.sky)
+    return manifold.sight().begin_first(s, held.links > 0 ? from : manifold.from_node(wave, node), q.end.direction,
+                                        held.knot);
+  const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, held.knot);
+  return manifold.sight().begin(s, from, q.end, held.knot, seed);
+}
+
+template <class Wave>
+void VolumeChains<Wave>::shine(Wave& wave, Manifold<Wave>& manifold, uint32_t chain,
+                               std::span<const RefractedWay> ways) {
+  const Held& held = chains_[chain];
+  const RefractedQuestion& q = held.question;
   for (const RefractedWay& way : ways) {
-    SuffixThroughput<Wave> suffix(wave, wave.dense(p, 2));
-    suffix.resume(through_, matrices_);
-    wave.space.resume_way();
-    scatter_along(wave, links - 1, way.direction, suffix);
-    manifold.shine_behind(wave, way, q, knot, {arrival, scale, links, chain_.toward[0]}, suffix);
+    if (held.links == 0) {
+      if (claims_[q.node].are_for(way.direction)) manifold.shine_along(wave, way, q, held.knot);
+      continue;
+    }
+    SuffixThroughput<Wave> suffix(wave, wave.dense(wave.nodes[q.node].path, 2));
+    suffix.resume(held.suffix, held.matrices);
+    wave.space.resume_way(held.way);
+    suffix.scatter(wave.space.stand_on_way(), -held.last, way.direction, held.density);
+    manifold.shine_behind(wave, way, q, held.knot, {held.arrival, held.scale, held.links, held.first}, suffix);
   }
-  return true;
 }
 
 template <class Wave>
@@ -316,80 +388,6 @@ ClaimCone VolumeChains<Wave>::cone_of(const Wave& wave, const Manifold<Wave>& ma
   Dir toward = beam ? beam->direction : Dir{0, 0, 1};
   if (manifold.sight().has_sheet()) toward = manifold.sight().sheet_guess(toward, knot).value_or(toward);
   return {false, wave.paths[node.path].direction, toward};
-}
-
-template <class Wave>
-void VolumeChains<Wave>::sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node) {
-  const SkyThroughWater* const sky = on_ ? wave.space.hidden_sky() : nullptr;
-  const Path& path = wave.paths[node.path];
-  if (!sky || !manifold.asks_through(wave, node) || !wave.space.even_around(node.path)) return;
-  if (path.claims.stands(Technique::volume_chains)) return;
-  const Vec3 place = manifold.from_node(wave, node).place;
-  const double deep = manifold.sight().below_sheet(place);
-  if (!(deep > 0)) return;
-  const Dir up = manifold.sight().sheet_axis();
-  const uint32_t mean = mean_toward(wave, node, up, deep);
-  if (mean == kNone) return;
-  claims_[wave.number_of(node)].add(Claim::chains_of_sky(kMostLinks), ClaimCone{!node.event, path.direction, up},
-                                    kReach * deep);
-  if constexpr (Wave::kWatched)
-    for (size_t k = 0; k < wave.knots(); ++k)
-      wave.throughputs.ask(node.path, Technique::volume_chains, ClaimedLight::sky(), k, &claims_[wave.number_of(node)]);
-  const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
-  const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
-  if (!(sample.density > 0)) return;
-  for (size_t k = 0; k < wave.knots(); ++k) {
-    if (manifold.is_alive(wave, path, k)) sample_sky(wave, manifold, node, k, *sky, sample.direction, deep, mean);
-  }
-}
-
-template <class Wave>
-void VolumeChains<Wave>::sample_sky(Wave& wave, Manifold<Wave>& manifold, const PathNode& node, size_t knot,
-                                    const SkyThroughWater& sky, Dir to, double deep, uint32_t mean) {
-  const RefractedQuestion q{
-      static_cast<uint32_t>(wave.number_of(node)), Wave::Space::kEmitter, false, {to, {}}, 1, nullptr, 0, true};
-  const auto toward = manifold.sight().sheet_guess(to, knot);
-  if (!toward) return;
-  if (!draw_chain(wave, node, *toward, deep / manifold.sight().steepness(*toward), mean, true)) return;
-  double density[kMaxKnots];
-  sky.densities(to, {density, wave.knots()});
-  chain_.share.take(wave.knots(), density, 1);
-  const NodeClaims& claims = claims_[q.node];
-  if (chain_.links > 0) {
-    if (claims.are_for(chain_.toward[0])) follow_chain(wave, manifold, q, knot);
-    return;
-  }
-  RefractedQuestion alone = q;
-  alone.scale /= chain_.share.mean(wave.P());
-  for (const RefractedWay& way : manifold.sight().first_through_sheet(manifold.from_node(wave, node), to, knot))
-    if (claims.are_for(way.direction)) manifold.shine_along(wave, way, alone, knot);
-}
-
-template <class Wave>
-bool VolumeChains<Wave>::passes_into_claimed_sky(const Wave& wave, const Manifold<Wave>& manifold, size_t i,
-                                                 const Continuation& on) const {
-  const PathNode& node = wave.nodes[i];
-  const Path& path = wave.paths[node.path];
-  return !path.claims.empty() && on.dirac && !node.event && wave.passes(node, on) &&
-         owner(path.claims.all(), path.claims.behind_interface(false), ClaimedLight::sky(), manifold.hero_of(path)) !=
-             Technique::chance;
-}
-
-template <class Wave>
-void VolumeChains<Wave>::settle_sky(Wave& wave, Manifold<Wave>& manifold, size_t i, const Continuation& on) const {
-  if (!passes_into_claimed_sky(wave, manifold, i, on)) return;
-  Path& path = wave.paths[wave.nodes[i].path];
-  double density[kMaxKnots], any = 0;  // below the horizon it is never drawn
-  wave.space.hidden_sky()->densities(on.in, {density, wave.knots()});
-  for (size_t k = 0; k < wave.knots(); ++k) any += path.relative[k] * density[k];
-  RefractedSight::Node from;
-  from.place = path.origin - path.direction * path.claims.suffix().flown_m;
-  from.time = path.time, from.draw = path.draw;
-  const bool looked_for =
-      any > 0 && manifold.sight().is_first_through_sheet(from, path.direction, on.in, manifold.hero_of(path));
-  if (looked_for) return;
-  path.claims.give_up_sky();
-  if constexpr (Wave::kWatched) wave.throughputs.take_other_way(wave.nodes[i].path);
 }
 
 }  // namespace suite

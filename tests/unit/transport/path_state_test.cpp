@@ -119,7 +119,19 @@ constexpr struct {
                 {"techniques/splitting.h", "Kept"},
                 {"techniques/splitting.h", "Branches"},
                 {"techniques/equiangular.h", "Flying"},
-                {"techniques/side_vertex.h", "Side"}};
+                {"techniques/side_vertex.h", "Side"},
+                {"techniques/manifold.h", "Asking"},
+                {"techniques/volume_chains.h", "Held"},
+                {"techniques/volume_chains.h", "Settling"},
+                {"refracted/search.h", "RefractedSearch"},
+                {"refracted/search.h", "TracedWay"},
+                {"refracted/search.h", "StraightLeg"},
+                {"refracted/search.h", "InterfaceChain"},
+                {"refracted/way.h", "WayStart"},
+                {"refracted/way.h", "WayEnd"},
+                {"refracted/way.h", "RefractedWay"},
+                {"refracted/way.h", "RefractedEvent"},
+                {"refracted/unfound.h", "Line"}};
 
 TEST(PathState, ThePageListsEveryMember) {
   auto listed = page();

@@ -1,5 +1,5 @@
 // Derivatives of rays that smooth interfaces bend, against differences of rays that are traced beside.
-#include "transport/refracted_sight.h"
+#include "transport/refracted/sight.h"
 
 #include <gtest/gtest.h>
 
