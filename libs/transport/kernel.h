@@ -75,7 +75,7 @@ class PathKernel final : public PathTracing {
   } stage_ = Stage::leave;
   using Question = SightQuestion;
 
-  // kernel_fly.h: from one node to the next.
+  // kernel_fly.h, kernel_start.h: from one node to the next.
   void request_hits(TraceRequest& request);
   // kernel_fill.h: through what fills space.
   void fly();
@@ -86,7 +86,6 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE bool meet(uint32_t p, uint32_t slot);
   bool meet_earth(uint32_t p, uint32_t slot);
   SUITE_INLINE void enter_node(uint32_t p, const Hit& hit, bool first);
-  SUITE_INLINE void escape(uint32_t p, bool in_field);
   bool is_first_surface(uint32_t p) const {
     return !techniques_.residual.has_been_back(p) && wave_.paths[p].surfaces == wave_.paths[p].received;
   }
@@ -106,10 +105,13 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE bool draw(size_t i, Continuation& on);
   SUITE_INLINE bool draw(size_t i, std::span<float> memory, Continuation& on);
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
-  SUITE_INLINE double survives(uint32_t p, double brightest);
-  SUITE_INLINE bool cut(size_t i, const Continuation& on);
   // Whether it has passed a surface.
   SUITE_INLINE bool leave(size_t i, const Continuation& on);
+  // kernel_end.h: how paths end.
+  SUITE_INLINE void escape(uint32_t p, bool in_field);
+  SUITE_INLINE double survives(uint32_t p, double brightest);
+  SUITE_INLINE bool cut(size_t i, const Continuation& on);
+  bool fail(uint32_t p);
   // kernel_beside.h: what only some paths come to.
   void see_from_above();
   void receive(uint32_t p);
@@ -121,7 +123,6 @@ class PathKernel final : public PathTracing {
   std::optional<bool> draw_at_interface(const PathNode& node, double lobe_u, std::span<float> memory, Continuation& on);
   SUITE_INLINE double ahead(size_t i, const Continuation& on) const;
   void leave_claims(const PathNode& node, const Continuation& on);
-  bool fail(uint32_t p);
 
   Wave wave_;
   Techniques<Wave> techniques_;

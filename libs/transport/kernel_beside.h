@@ -155,15 +155,6 @@ TraceStatistics PathKernel<Wave>::take_statistics() {
   return all;
 }
 
-// A path that cannot go on because a model gave what is no number: its sample is rejected and counted.
-template <class Wave>
-bool PathKernel<Wave>::fail(uint32_t p) {
-  wave_.contribution(p, kFromMatter).scale = std::numeric_limits<float>::quiet_NaN();
-  wave_.contribute();
-  wave_.hand_over();
-  return false;
-}
-
 // The first smooth interface of a path: what water mirrors is weak, but in dark bands all there is. A power of 1/2:
 // counts of strata have no rest. Nothing: it does not mirror.
 template <class Wave>

@@ -1,11 +1,10 @@
-// Definitions of kernel.h: continuations, roulette, and how paths end.
+// Definitions of kernel.h: continuations.
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "transport/kernel.h"
+#include "transport/kernel_end.h"
 
 namespace suite {
 
@@ -130,36 +129,6 @@ bool PathKernel<Wave>::draw(size_t i, std::span<float> memory, Continuation& on)
   if constexpr (Surfaces::kDense > 0)
     if (techniques_.caustics.guides(wave_, node)) return techniques_.caustics.draw(wave_, i, u, lobe_u, memory, on);
   return wave_.surfaces.sample(i, node.path, wave_.hits[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
-}
-
-// The probability with which the path has survived; 0 when roulette ends it.
-template <class Wave>
-double PathKernel<Wave>::survives(uint32_t p, double brightest) {
-  Path& path = wave_.paths[p];
-  const double alive = Estimator::survival(brightest, path.order(), wave_.options.roulette_after);
-  if (alive == 1) return 1;
-  if (dimensions::of_roulette(path.stream, path.sample, path.order() - 1) >= alive) {
-    wave_.records[p].end = PathEnd::roulette;
-    return 0;
-  }
-  for (size_t k = 0; k < wave_.knots(); ++k) path.throughput[k] /= alive;
-  return alive;
-}
-
-// Whether the path has as many nodes as it may have. Of two branches to the next scattering the open one would bring
-// all light by itself.
-template <class Wave>
-bool PathKernel<Wave>::cut(size_t i, const Continuation& on) {
-  const bool event = wave_.nodes[i].event;
-  const uint32_t p = wave_.nodes[i].path;
-  const Path& path = wave_.paths[p];
-  const uint32_t most = event ? wave_.options.max_scatterings : static_cast<uint32_t>(wave_.options.max_nodes);
-  if (most == 0 || (event ? path.scatterings : path.surfaces) < most) return false;
-  wave_.records[p].end = PathEnd::max_nodes;
-  leave(i, on);
-  const double index = wave_.space.index(p);
-  if (on.branch != Branch::forced) wave_.records[p].truncated += path.throughput[0] * path.share * index * index;
-  return true;
 }
 
 template <class Wave>

@@ -1,11 +1,9 @@
-// Definitions of kernel.h: what paths come to: surfaces, the Earth, the outside, and the lights that they meet there by
-// chance.
+// Definitions of kernel.h: what paths come to: surfaces, the Earth.
 #pragma once
-#include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "transport/kernel.h"
+#include "transport/kernel_end.h"
 
 namespace suite {
 
@@ -93,38 +91,6 @@ bool PathKernel<Wave>::meet_earth(uint32_t p, uint32_t slot) {
   enter_node(p, hit, first);
   emit(p);
   return scatters;
-}
-
-// What a path meets outside the scene. in_field: but for beams, which the field of the air has.
-template <class Wave>
-void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
-  const Path& path = wave_.paths[p];
-  wave_.records[p].end = PathEnd::escaped;
-  wave_.records[p].escape = path.direction;
-  for (const SampledLight& light : wave_.lights.outside) {
-    if (in_field && light.beam) continue;
-    if (light.nature.above && path.order() == 0 && light.light->is_below(path.origin)) continue;
-    if (is_refracted(light.nature) && !is_left_to_chance(p, {ClaimedLight::Kind::small, light.index})) continue;
-    const auto met = light.light->met_outside(path.direction, path.time);
-    if (!met) continue;
-    std::span<float> memory;
-    if (!met->spectrum) {  // its shape changes with direction
-      memory = wave_.dense(p);
-      std::fill(memory.begin(), memory.end(), 0.0f);
-      const bool apart = path.points_apart && (path.order() == 0 || (mirrors_ && FlatMirrors::is_along(path)));
-      apart ? light.light->add_without_points(path.direction, path.time, 1, memory)
-            : light.light->add(path.direction, path.time, 1, memory);
-    }
-    Contribution& c = wave_.contribution(p, light.index);
-    c.scale = static_cast<float>(met->scale);
-    if (wave_.options.explicit_sources && path.last_density > 0 && met->density > 0)
-      c.scale *= static_cast<float>(Estimator::by_chance(light.nature, path.before * met->density / path.last_density));
-    c.beam = light.beam;
-    c.water = path.water;
-    c.radiance = met->spectrum;
-    if (!c.radiance) c.radiance = memory.data();
-    if (c.scale != 0) wave_.contribute();
-  }
 }
 
 }  // namespace suite

@@ -175,9 +175,8 @@ bool SideVertex<Wave>::begin_one(Wave& wave, const PathNode& node, Side& side, s
   path.origin = wave.space.place(node.path);
   path.branch = Branch::none, path.sided = true;
   side.node = static_cast<uint32_t>(&node - wave.nodes.data());
-  const Factor w = wave.space.evaluate(node.path, scattering_cosine(-from.direction, path.direction), spectrum);
-  if (w.spectrum != spectrum.data()) std::copy_n(w.spectrum, wave.bins, spectrum.data());
-  side.scale = double{w.scale} / (own * shares * survives);
+  SuffixThroughput<Wave> suffix(wave, spectrum);
+  side.scale = suffix.leave_apart(node, path.direction) / (own * shares * survives);
   return true;
 }
 
@@ -214,8 +213,7 @@ bool SideVertex<Wave>::fly_one(Wave& wave, Side& side, std::span<float> spectrum
   const std::span<float> through = wave.transmission;
   if (!wave.space.fly_aside(p, path, hit, wave.way_to(hit, path), {u[0], 0}, side.flight, through)) return false;
   side.scale *= double{side.flight.through.scale};
-  if (side.flight.through.spectrum)
-    for (size_t i = 0; i < wave.bins; ++i) spectrum[i] *= through[i];
+  if (side.flight.through.spectrum) SuffixThroughput<Wave>(wave, spectrum).weaken(through);
   const auto sample = light_->only ? light_->only : light_->light->sample({}, {u[2], u[3], 0, 0}, path.time);
   if (!sample || !(sample->scale > 0)) return false;
   side.sample = *sample;
@@ -240,7 +238,9 @@ void SideVertex<Wave>::shine(Wave& wave, const Side& side, size_t i, std::span<f
   std::fill_n(reach, wave.knots(), 1.0);
   const bool dim = wave.space.dims(wave.sight_rays.rays()[i], wave.sight_rays.distance()[i], i, wave.transmission,
                                    {reach, wave.knots()});
-  for (size_t k = 0; dim && k < wave.bins; ++k) spectrum[k] *= wave.transmission[k];
+  SuffixThroughput<Wave> suffix(wave, wave.dense(p, 2));
+  suffix.resume(spectrum, wave.nodes[side.node], path.direction);
+  if (dim) suffix.weaken(wave.transmission);
   double denominator = 1;
   if (sample.density > 0) {
     // As for the path's own way, which shares with what meets the light by chance.
@@ -250,8 +250,6 @@ void SideVertex<Wave>::shine(Wave& wave, const Side& side, size_t i, std::span<f
                  by_chance = path.other.mean(wave.P(), density, {reach, wave.knots()});
     denominator = Wave::Estimator::asked(sample.density, others > 0 ? by_chance / others : 0, light_->nature.disk);
   }
-  SuffixThroughput<Wave> suffix(wave, wave.dense(p, 2));
-  suffix.resume(spectrum, wave.nodes[side.node], path.direction);
   const double scattered = suffix.scatter_apart(event, -path.direction, sample.direction);
   const float* radiance = sample.spectrum;
   if (!radiance) {

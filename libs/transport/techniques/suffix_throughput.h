@@ -36,6 +36,12 @@ class SuffixThroughput {
     for (size_t b = 0; b < wave_.bins; ++b) spectrum_[b] = w.scale * (w.spectrum ? w.spectrum[b] : 1.0f);
     if constexpr (Wave::kStokes) wave_.polarise(node, in);
   }
+  // The same of an event of what fills space, spectrum alone but for the number that belongs to it, which is returned.
+  double leave_apart(const PathNode& node, Dir in) {
+    const Factor w = wave_.evaluate(node, in, spectrum_);
+    if (w.spectrum != spectrum_.data()) std::copy_n(w.spectrum, wave_.bins, spectrum_.data());
+    return double{w.scale};
+  }
   // T <- one that has been begun, and goes on in this memory.
   void resume(std::span<const float> spectrum, const Matrices& matrices) {
     std::copy(spectrum.begin(), spectrum.end(), spectrum_.begin());

@@ -20,7 +20,7 @@
 // The sky of the air is asked for in the same way, 0 <= n, towards a direction above the water that the path's knot has
 // drawn (sky_through_water.h), where the scene's only refractor is a sheet. Light from there may come through waves in
 // several ways; the one that Newton's method finds first is asked for, unless it is much focused, and chance keeps the
-// others (settle_sky). Both lights are asked for by scatterings as well, for what comes from more than half
+// others (settle). Both lights are asked for by scatterings as well, for what comes from more than half
 // way round towards the light: a path that runs away from it would have to turn round by chance, which forward
 // scattering does rarely. What comes from further ahead (ClaimCone) is left to where the path goes on. Based on: paths
 // drawn from the light's end on a given number of scatterings: I. Georgiev et al., "Joint importance sampling of
@@ -91,9 +91,10 @@ class VolumeChains {
   // The mean of the matter on `length` m towards the light as an event; kNone where it is of no use for chains.
   uint32_t mean_toward(Wave& wave, const PathNode& node, Dir toward, double length);
   // Draws number and directions of scatterings.
-  bool draw_chain(Wave& wave, const PathNode& node, Dir toward, double length, uint32_t mean, bool sky);
+  bool draw_chain(Wave& wave, const PathNode& node, Dir toward, double length, uint32_t mean, ClaimedLight::Kind light);
   // A set of numbers of the chain that the path draws at its last surface.
-  std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const;
+  std::array<double, 4> chain_numbers(const Path& path, const PathNode& node, ClaimedLight::Kind light,
+                                      uint32_t set) const;
   ClaimCone cone_of(const Wave& wave, const Manifold<Wave>& manifold, const PathNode& node, uint16_t light,
                     size_t knot) const;
   Ray ray_from(const Wave& wave, const PathNode& node, Dir toward) const;
@@ -195,7 +196,7 @@ ChainLook VolumeChains<Wave>::sample(Wave& wave, Manifold<Wave>& manifold, const
   if constexpr (Wave::kWatched)
     wave.throughputs.ask(node.path, Technique::volume_chains, {kSmall, q.light}, knot, &claims);
   number = held_;
-  return draw_chain(wave, node, toward, length, mean, false) && claims.are_for(chain_.toward[0]) &&
+  return draw_chain(wave, node, toward, length, mean, kSmall) && claims.are_for(chain_.toward[0]) &&
                  follow_chain(wave, manifold, q, knot)
              ? ChainLook::looks
              : ChainLook::ends;
@@ -215,12 +216,13 @@ uint32_t VolumeChains<Wave>::mean_toward(Wave& wave, const PathNode& node, Dir t
 
 template <class Wave>
 bool VolumeChains<Wave>::draw_chain(Wave& wave, const PathNode& node, Dir toward, double length, uint32_t mean,
-                                    bool sky) {
+                                    ClaimedLight::Kind light) {
   const Path& path = wave.paths[node.path];
   Chain& chain = chain_;
   chain.mean = mean;
   const auto own = static_cast<size_t>(path.knot);
-  const std::array<double, 4> u = chain_numbers(path, node.event, sky, dimensions::of_link(0, sky));
+  const bool sky = light == ClaimedLight::Kind::sky;
+  const std::array<double, 4> u = chain_numbers(path, node, light, dimensions::of_link(0, sky));
   const int least = sky ? 0 : 1;
   const auto count = [&](size_t k) {
     return LinkCount(wave.space.scattering(mean, k) * length, wave.space.albedo(mean, k), least, kMostLinks);
@@ -233,7 +235,7 @@ bool VolumeChains<Wave>::draw_chain(Wave& wave, const PathNode& node, Dir toward
   chain.toward[n] = toward;
   for (size_t i = n; i-- > 0;) {
     const std::array<double, 4> v =
-        i + 1 == n ? u : chain_numbers(path, node.event, sky, dimensions::of_link(n - 1 - i, sky));
+        i + 1 == n ? u : chain_numbers(path, node, light, dimensions::of_link(n - 1 - i, sky));
     if (!wave.space.scatter(mean, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i])) return false;
     float density[kMaxKnots];
     wave.space.densities(mean, -chain.toward[i + 1], chain.toward[i], {density, wave.knots()});
@@ -245,9 +247,10 @@ bool VolumeChains<Wave>::draw_chain(Wave& wave, const PathNode& node, Dir toward
 }
 
 template <class Wave>
-std::array<double, 4> VolumeChains<Wave>::chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const {
-  const uint32_t at = event ? dimensions::kNodes + path.flights : path.surfaces - 1;
-  return dimensions::of_chain(path.stream, path.sample, at, sky, set);
+std::array<double, 4> VolumeChains<Wave>::chain_numbers(const Path& path, const PathNode& node,
+                                                        ClaimedLight::Kind light, uint32_t set) const {
+  const uint32_t at = node.event ? dimensions::kNodes + path.flights : path.surfaces - 1;
+  return dimensions::of_chain(path.stream, path.sample, at, light == ClaimedLight::Kind::sky, set);
 }
 
 template <class Wave>
@@ -275,7 +278,8 @@ bool VolumeChains<Wave>::follow_chain(Wave& wave, Manifold<Wave>& manifold, cons
     const double most = std::min(free_way(wave, ray), claims_[q.node].reach());
     if (!(most > 0)) return false;
     const std::array<double, 4> u =
-        chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
+        chain_numbers(path, node, q.sky ? ClaimedLight::Kind::sky : ClaimedLight::Kind::small,
+                      dimensions::of_link_place(i, kMostLinks, q.sky));
     const auto own = static_cast<size_t>(path.knot);
     const double x = wave.space.share_of_way(link_place(wave, manifold, q, i, most, own).draw({u[0], u[1]}), most, own);
     const auto density_at = [&](size_t k) {

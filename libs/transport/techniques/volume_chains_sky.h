@@ -24,7 +24,7 @@ uint32_t VolumeChains<Wave>::draw_sky(Wave& wave, Manifold<Wave>& manifold, cons
   if constexpr (Wave::kWatched)
     for (size_t k = 0; k < wave.knots(); ++k)
       wave.throughputs.ask(node.path, Technique::volume_chains, ClaimedLight::sky(), k, &claims_[wave.number_of(node)]);
-  const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
+  const std::array<double, 4> u = chain_numbers(path, node, ClaimedLight::Kind::sky, dimensions::kOfChainsSky);
   const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
   if (!(sample.density > 0)) return held_;
   for (size_t k = 0; k < wave.knots(); ++k) {
@@ -40,7 +40,8 @@ void VolumeChains<Wave>::draw_sky(Wave& wave, Manifold<Wave>& manifold, const Pa
       static_cast<uint32_t>(wave.number_of(node)), Wave::Space::kEmitter, false, {to, {}}, 1, nullptr, 0, true};
   const auto toward = manifold.sight().sheet_guess(to, knot);
   if (!toward) return;
-  if (!draw_chain(wave, node, *toward, deep / manifold.sight().steepness(*toward), mean, true)) return;
+  if (!draw_chain(wave, node, *toward, deep / manifold.sight().steepness(*toward), mean, ClaimedLight::Kind::sky))
+    return;
   double density[kMaxKnots];
   sky.densities(to, {density, wave.knots()});
   chain_.share.take(wave.knots(), density, 1);
