@@ -55,6 +55,26 @@ TEST(Sources, AirIsReadAsItIsWritten) {
               1e-6);
 }
 
+TEST(Sources, SpheresBySizesAndIndex) {
+  const auto air = [](const char* aerosol, const char* cloud) {
+    return read(strf("atmosphere: {profile: tropical, aerosol: {spheres: {%s}, optical_depth_550: 0.2, "
+                     "scale_height_m: 1000}, clouds: [{spheres: {%s}, base_m: 1000, top_m: 2000, "
+                     "optical_depth_550: 3}]}",
+                     aerosol, cloud))
+        .air;
+  };
+  const auto spec = air("sizes: log_normal, median_radius_um: 0.1, sigma: 1.6, n: 1.5, k: 0.01",
+                        "sizes: gamma, effective_radius_um: 2, effective_variance: 0.1, n: 1.33");
+  const double middle[] = {0.55};
+  EXPECT_NEAR(particle_optics(spec->aerosol->boundary, middle).extinction(0), 1, 1e-12);
+  const ParticleOptics drops = particle_optics(spec->clouds[0].particles, middle);
+  EXPECT_NEAR(spec->clouds[0].content * 1000 * drops.extinction(0), 3, 1e-6);
+  EXPECT_EQ(drops.albedo(0), 1);
+  EXPECT_TRUE(drops.matrices());
+  EXPECT_TRUE(air("sizes: junge, exponent: 3, least_radius_um: 0.1, largest_radius_um: 2, n: 1.5",
+                  "sizes: modified_gamma, shape: 6, slope: 3, n: 1.33, density_kg_m3: 900"));
+}
+
 TEST(Sources, GasesByName) {
   const auto gases = [](const char* name) {
     const SourceSpecs s = read(strf("atmosphere: {profile: tropical, gases: %s}", name));
