@@ -42,7 +42,7 @@ struct PolarisedScratch {
   SuffixMatrices suffix;
   Interaction at;
   struct {
-    std::vector<float> I, Q, U;  // Q and U over I
+    std::vector<float> I, Q, U, V;  // Q, U and V over I; no V where nobody asks
     double unknown = 0;
   } air;  // light along the last way through it
 };
@@ -176,7 +176,7 @@ Wave<Surfaces, Space, Throughputs, Estimator>::Wave(const KernelContext& c, size
       waters(c),
       surfaces(c.surface, c.optics, width, c.keep_first),
       space(SpaceContext{c.surface, c.optics, c.environment, c.options, width,
-                         std::span<const double>(heroes.probability).first(heroes.count), lost.get()}),
+                         std::span<const double>(heroes.probability).first(heroes.count), lost.get(), c.parts}),
       throughputs(of_paths),
       outbox{sink, std::vector<Contribution>(std::max<size_t>(256, 4 * width))},
       paths(width),
