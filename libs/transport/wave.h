@@ -44,7 +44,8 @@ struct PolarisedScratch {
   struct {
     std::vector<float> I, Q, U, V;  // Q, U and V over I; no V where nobody asks
     double unknown = 0;
-  } air;  // light along the last way through it
+  } air;            // light along the last way through it
+  Stokes source{};  // of the light of the contribution under way
 };
 struct NoPolarisedScratch {
   NoMatrices suffix;
@@ -138,6 +139,15 @@ class Wave {
   SUITE_INLINE Contribution& contribution(uint32_t p, uint16_t light);
   void contribute() { ++outbox.pending; }
   void hand_over();
+  // Where polarisation is carried: the contribution's light leaves a source of a light of the environment along k.
+  // Until the next one's is told it has to be handed over.
+  void leaves(Contribution& c, uint32_t source, Dir k, double time) {
+    if constexpr (kStokes) {
+      if (source == kUnpolarised) return;
+      polarisation.source = environment.lights[c.light]->stokes(source, k, time);
+      c.source = &polarisation.source;
+    }
+  }
   // Memory for one spectrum of path p, `count` of which are taken before anything else is handed over.
   std::span<float> dense(uint32_t p, uint32_t count = 1);
 
@@ -276,7 +286,7 @@ Contribution& Wave<Surfaces, Space, Throughputs, Estimator>::contribution(uint32
   c.radiance = nullptr;
   c.arrival = path.arrival;
   c.missed = std::numeric_limits<float>::infinity();
-  c.polarised = nullptr, c.unknown = 0;
+  c.polarised = nullptr, c.unknown = 0, c.source = nullptr;
   return c;
 }
 
