@@ -5,6 +5,7 @@
 #include "base/files.h"
 #include "base/text_lines.h"
 #include "formats/particles/particles.h"
+#include "math/mueller.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -43,10 +44,27 @@ struct ColumnKind {
   const char* name;
   double least, most;
 };
-constexpr ColumnKind kColumns[] = {
-    {"wavelength_um", 0.1, 1000}, {"extinction_relative", 0, 1e6}, {"extinction_m2_g", 0, 1e6}, {"albedo", 0, 1},
-    {"asymmetry", -0.99, 0.99},   {"asymmetry_2", -0.99, 0.99},    {"share_2", 0, 1},           {"angle_deg", 0, 180},
-    {"phase_per_sr", 0, 1e12},    {"phase_relative", 0, 1e12},     {"order", 0, 1e5},           {"moment", -1.1, 1.1}};
+constexpr ColumnKind kColumns[] = {{"wavelength_um", 0.1, 1000},
+                                   {"extinction_relative", 0, 1e6},
+                                   {"extinction_m2_g", 0, 1e6},
+                                   {"albedo", 0, 1},
+                                   {"asymmetry", -0.99, 0.99},
+                                   {"asymmetry_2", -0.99, 0.99},
+                                   {"share_2", 0, 1},
+                                   {"angle_deg", 0, 180},
+                                   {"phase_per_sr", 0, 1e12},
+                                   {"phase_relative", 0, 1e12},
+                                   {"order", 0, 1e5},
+                                   {"moment", -1.1, 1.1},
+                                   {"p12", -1, 1},
+                                   {"p22", -1, 1},
+                                   {"p33", -1, 1},
+                                   {"p34", -1, 1},
+                                   {"p44", -1, 1}};
+// Of the matrix over P11, in the order of these columns.
+constexpr const char* kElements[] = {"p12", "p22", "p33", "p34", "p44"};
+constexpr double PlaneBlocks::*kPlaces[] = {&PlaneBlocks::b, &PlaneBlocks::a2, &PlaneBlocks::c, &PlaneBlocks::d,
+                                            &PlaneBlocks::c2};
 
 const ColumnKind& kind_of(std::string_view name) {
   return *std::find_if(std::begin(kColumns), std::end(kColumns), [&](const ColumnKind& k) { return name == k.name; });
@@ -118,7 +136,8 @@ void read_bulk(const Block& block, ReadParticles& out) {
   if (!block.has("wavelength_um") || !block.has("albedo") || relative == block.has("extinction_m2_g"))
     throw Error(block.where, "the first block is not of extinction and albedo",
                 "wavelength_um, extinction_relative (or extinction_m2_g), albedo");
-  for (const char* name : {"angle_deg", "phase_per_sr", "phase_relative", "order", "moment"})
+  for (const char* name :
+       {"angle_deg", "phase_per_sr", "phase_relative", "order", "moment", "p12", "p22", "p33", "p34", "p44"})
     if (block.has(name))
       throw Error(block.where, strf("'%s' stands in the first block", name), "it begins a second one");
   if (!block.has("asymmetry") && (block.has("asymmetry_2") || block.has("share_2")))
@@ -189,11 +208,23 @@ void each_wavelength(const Block& block, ReadParticles& out, const Use& use) {
   }
 }
 
+PlaneBlocks matrix_of(const Block& block, size_t row) {
+  constexpr double kLeast = -1e-3;  // of a coherency's eigenvalue, which printed digits may cost
+  PlaneBlocks m;
+  for (size_t e = 0; e < std::size(kElements); ++e) m.*kPlaces[e] = block.value(row, kElements[e]);
+  if (least_coherency(m.matrix()) < kLeast)
+    throw Error(block.place(row), "the matrix is none of a scatterer",
+                "elements are over P11; where they are, a sign is wrong: nothing polarises more than all light");
+  return m;
+}
+
 void read_angles(const Block& block, ReadParticles& out) {
+  const bool polarises = block.has("p12");
   const bool any_scale = block.has("phase_relative");
   Ones ones("the integral of the phase function", "phase_relative may have any scale; closer angles integrate better");
   each_wavelength(block, out, [&](double w, size_t from, size_t to) {
     std::vector<double> angles, values;
+    std::vector<PlaneBlocks> matrices;
     double integral = 0;
     for (size_t r = from; r < to; ++r) {
       const double degrees = block.value(r, "angle_deg");
@@ -202,12 +233,14 @@ void read_angles(const Block& block, ReadParticles& out) {
                     "from 0 to 180, ascending by 1e-4 at least");
       angles.push_back(degrees == 180 ? kPi : degrees * kDegree);
       values.push_back(block.value(r, any_scale ? "phase_relative" : "phase_per_sr"));
+      if (polarises) matrices.push_back(matrix_of(block, r));
       const size_t i = angles.size() - 1;
       if (i > 0) integral += kPi * (values[i - 1] + values[i]) * (std::cos(angles[i - 1]) - std::cos(angles[i]));
     }
     if (block.value(to - 1, "angle_deg") != 180) throw Error(block.place(to - 1), "the last angle is not 180 degrees");
     if (!(integral > 0)) throw Error(block.place(from), "a phase function that is all zero");
     if (!any_scale) ones.take(integral, w, block.place(from));
+    if (polarises) out.data.matrices.push_back(gridded_matrices(angles, matrices));
     return gridded_phase(angles, values);
   });
   ones.add_notes(out.notes);
@@ -246,9 +279,15 @@ void read_moments(const Block& block, ReadParticles& out) {
 void read_phases(const Block& block, ReadParticles& out) {
   const bool angles = block.has("angle_deg") && block.has("phase_per_sr") != block.has("phase_relative"),
              moments = block.has("order") && block.has("moment");
-  if (!block.has("wavelength_um") || angles == moments || block.columns.size() != 3)
+  const auto elements = static_cast<size_t>(
+      std::count_if(std::begin(kElements), std::end(kElements), [&](auto e) { return block.has(e); }));
+  if (!block.has("wavelength_um") || angles == moments || block.columns.size() != 3 + elements ||
+      (moments && elements > 0))
     throw Error(block.where, "the second block is not of phase functions",
                 "wavelength_um, angle_deg, phase_per_sr (or phase_relative); or wavelength_um, order, moment");
+  if (elements > 0 && elements < std::size(kElements))
+    throw Error(block.where, strf("%zu of the five elements of a scattering matrix", elements),
+                "p12, p22, p33, p34, p44, over P11");
   if (block.rows() == 0) throw Error(block.where, "a block without rows");
   angles ? read_angles(block, out) : read_moments(block, out);
 }

@@ -1,6 +1,7 @@
 #include "formats/sim_text/air.h"
 
 #include "air/lowtran.h"
+#include "air/spheres.h"
 #include "base/files.h"
 #include "formats/air_table/air_table.h"
 #include "formats/hitran/hitran.h"
@@ -95,17 +96,46 @@ std::shared_ptr<const ParticleData> read_optics(const Params& p, bool aerosol, s
   });
 }
 
-ParticleSpec read_kind(const Params& p, const char* key, bool aerosol, std::vector<std::string>& notes) {
+SizeDistribution read_sizes(const Params& p) {
+  constexpr double kLeast = 1e-4, kMost = 1e4;  // um
+  const auto um = [&](const char* key) { return p.number_in(key, kLeast, kMost, "um"); };
+  switch (p.at("sizes").as_choice({"log_normal", "gamma", "modified_gamma", "junge"})) {
+    case 0:
+      return SizeDistribution::log_normal(um("median_radius_um"), p.number("sigma"));
+    case 1:
+      return SizeDistribution::gamma(um("effective_radius_um"), p.number("effective_variance"));
+    case 2:
+      return SizeDistribution::modified_gamma(p.number("shape"), p.number("slope"), p.number("power", 1));
+    default:
+      return SizeDistribution::junge(p.number("exponent"), um("least_radius_um"), um("largest_radius_um"));
+  }
+}
+
+std::shared_ptr<const SphereSpec> read_spheres(const Params& p, bool aerosol, const LightContext& context) {
+  const auto k = p.find("k");
+  SphereSpec spheres{located(p, [&] { return read_sizes(p); }), context.positive(p.at("n"), "n", "1"),
+                     k ? context.positive(*k, "k", "1") : Curve::constant(0), 0, p.text("name", "spheres")};
+  if (!aerosol) spheres.density = p.number_in("density_kg_m3", 1, 3e4, "kg/m3", 1000);
+  return std::make_shared<const SphereSpec>(std::move(spheres));
+}
+
+ParticleSpec read_kind(const Params& p, const char* key, bool aerosol, const LightContext& context,
+                       std::vector<std::string>& notes) {
+  ParticleSpec spec;
+  if (const auto spheres = p.find("spheres")) {
+    for (const char* other : {"optics", key})
+      if (p.has(other)) throw spheres->error(strf("both `spheres` and `%s`", other), "drop one of the two");
+    spec.spheres = read_spheres(*spheres, aerosol, context);
+    return spec;
+  }
   if (const auto optics = p.find("optics")) {
     if (p.has(key)) throw optics->error(strf("both `optics` and `%s`", key), "drop one of the two");
-    ParticleSpec spec;
     spec.data = read_optics(*optics, aerosol, notes);
     return spec;
   }
   std::vector<std::string> known;
   for (const ParticleKind& kind : particle_kinds())
     if (kind.aerosol == aerosol) known.push_back(kind.name);
-  ParticleSpec spec;
   spec.name = known[p.at(key).as_choice(known)];
   // Each only where it changes anything; elsewhere the key is left unread and refused.
   if (spec.name == "desert")
@@ -118,9 +148,9 @@ ParticleSpec read_kind(const Params& p, const char* key, bool aerosol, std::vect
   return spec;
 }
 
-AirSpec::Aerosol read_aerosol(const Params& p, std::vector<std::string>& notes) {
+AirSpec::Aerosol read_aerosol(const Params& p, const LightContext& context, std::vector<std::string>& notes) {
   AirSpec::Aerosol a;
-  a.boundary = read_kind(p, "model", true, notes);
+  a.boundary = read_kind(p, "model", true, context, notes);
   const auto depth = p.find("optical_depth_550");
   if (depth && p.has("visibility_km"))
     throw depth->error("both a depth and a visibility are given", "drop one of the two");
@@ -147,9 +177,9 @@ std::optional<double> green_of(const ParticleSpec& particles) {
   return particle_optics(particles, middle).extinction(0);
 }
 
-AirSpec::Cloud read_cloud(const Params& p, std::vector<std::string>& notes) {
+AirSpec::Cloud read_cloud(const Params& p, const LightContext& context, std::vector<std::string>& notes) {
   AirSpec::Cloud c;
-  c.particles = read_kind(p, "kind", false, notes);
+  c.particles = read_kind(p, "kind", false, context, notes);
   c.base = p.number_in("base_m", -1000, 30000, "m above sea level");
   c.top = p.number_in("top_m", c.base + 1, 40000, "m above sea level");
   const auto depth = p.find("optical_depth_550"), content = p.find("content_g_m3");
@@ -190,9 +220,9 @@ std::shared_ptr<const AirSpec> read_air(const Params& p, const LightContext& con
   air->gases = read_gases(p, air->notes);
   air->points.most = static_cast<int>(p.integer("g_points", 1, 16, air->points.most));
   air->molecules = p.boolean("rayleigh", true);
-  if (const auto aerosol = p.find("aerosol")) air->aerosol = read_aerosol(*aerosol, air->notes);
+  if (const auto aerosol = p.find("aerosol")) air->aerosol = read_aerosol(*aerosol, context, air->notes);
   if (const auto clouds = p.find("clouds"))
-    for (const Params& cloud : clouds->items()) air->clouds.push_back(read_cloud(cloud, air->notes));
+    for (const Params& cloud : clouds->items()) air->clouds.push_back(read_cloud(cloud, context, air->notes));
   if (p.has("scene_height_m")) air->scene_height = p.number_in("scene_height_m", -1000, 20000, "m above sea level");
   if (p.has("ground_height_m")) air->ground_height = p.number_in("ground_height_m", -1000, 20000, "m above sea level");
   if (const auto earth = p.find("shape")) air->round = earth->as_choice({"round", "flat"}) == 0;

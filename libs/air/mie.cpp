@@ -140,10 +140,10 @@ double MieSphere::phase(double cosine) const {
   return 0.5 * (std::norm(s.across) + std::norm(s.along)) / (kPi * x_ * x_ * scattering_);
 }
 
-void MieSphere::add_phase(std::span<const double> cosines, double weight, std::span<double> sums) const {
+template <class Use>
+void MieSphere::each_amplitude(std::span<const double> cosines, const Use& use) const {
   // As amplitudes(), with a block of angles abreast for each order.
   constexpr size_t kBlock = 16;
-  const double scale = weight / (4 * kPi * x_ * x_ * scattering_);
   for (size_t first = 0; first < cosines.size(); first += kBlock) {
     const size_t count = std::min(kBlock, cosines.size() - first);
     double mu[kBlock] = {}, before[kBlock] = {}, now[kBlock], plus[2][kBlock] = {}, minus[2][kBlock] = {};
@@ -163,11 +163,25 @@ void MieSphere::add_phase(std::span<const double> cosines, double weight, std::s
         now[i] = s + next * t;
       }
     }
-    // |S1|^2 + |S2|^2 is half of what sum and difference of the two have.
-    for (size_t i = 0; i < count; ++i)
-      sums[first + i] += scale * (plus[0][i] * plus[0][i] + plus[1][i] * plus[1][i] + minus[0][i] * minus[0][i] +
-                                  minus[1][i] * minus[1][i]);
+    for (size_t i = 0; i < count; ++i) use(first + i, Number{plus[0][i], plus[1][i]}, Number{minus[0][i], minus[1][i]});
   }
+}
+
+void MieSphere::add_phase(std::span<const double> cosines, double weight, std::span<double> sums) const {
+  const double scale = weight / (4 * kPi * x_ * x_ * scattering_);
+  each_amplitude(cosines, [&](size_t i, Number plus, Number minus) {
+    // |S1|^2 + |S2|^2 is half of what sum and difference of the two have.
+    sums[i] += scale * (plus.re * plus.re + plus.im * plus.im + minus.re * minus.re + minus.im * minus.im);
+  });
+}
+
+void MieSphere::add_matrices(std::span<const double> cosines, double weight, std::span<PlaneBlocks> sums) const {
+  const double scale = weight / (4 * kPi * x_ * x_ * scattering_);
+  each_amplitude(cosines, [&](size_t i, Number plus, Number minus) {
+    const double p = plus.re * plus.re + plus.im * plus.im, m = minus.re * minus.re + minus.im * minus.im;
+    const double both = plus.re * minus.re + plus.im * minus.im, turn = plus.im * minus.re - plus.re * minus.im;
+    sums[i] = sums[i] + PlaneBlocks::of(scale * (p + m), -2 * scale * both, scale * (p - m), 2 * scale * turn);
+  });
 }
 
 }  // namespace suite

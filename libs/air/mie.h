@@ -40,8 +40,14 @@ class MieSphere {
   double phase(double cos_scatter) const;
   // Adds weight * phase(cosine) at each cosine; quicker than one by one.
   void add_phase(std::span<const double> cos_scatter, double weight, std::span<double> sums) const;
+  // Adds weight * phase(cosine) times the scattering matrix, of which polarised() has the rest over the first element.
+  void add_matrices(std::span<const double> cos_scatter, double weight, std::span<PlaneBlocks> sums) const;
 
  private:
+  // The sum and the difference of both amplitudes, twice each, at cosines of which some are abreast: use(number of the
+  // cosine, sum, difference).
+  template <class Use>
+  void each_amplitude(std::span<const double> cosines, const Use& use) const;
   void sum_efficiencies();
   double x_, scattering_ = 0, absorption_ = 0, asymmetry_ = 0;
   std::vector<std::complex<double>> a_, b_;  // of order 1, 2, ...; [0] unused

@@ -43,22 +43,41 @@ std::optional<double> ParticleData::green() const {
   return extinction_at(kGreen);
 }
 
+template <class Use>
+void ParticleData::each_phase(double wavelength_um, const Use& use) const {
+  const Between at = between(phase_um, wavelength_um, logarithm);
+  for (const bool up : {false, true}) {
+    const double share = up ? at.share : 1 - at.share;
+    if (!(share > 0)) continue;
+    const size_t i = at.low + (up ? 1 : 0);
+    use(i, share * std::max(extinction_at(phase_um[i]) * albedo_at(phase_um[i]), kNone));
+  }
+}
+
+std::vector<PlaneBlocks> ParticleData::matrices_at(double wavelength_um) const {
+  std::vector<PlaneBlocks> mixed(phase_cosines().size(), PlaneBlocks{0, 0, 0, 0, 0, 0});
+  each_phase(wavelength_um, [&](size_t i, double weight) {
+    // Where nothing is scattered the matrix still is one.
+    for (size_t c = 0; c < mixed.size(); ++c)
+      mixed[c] = mixed[c] + matrices[i][c] * (weight * std::max(phase[i][c], kNone));
+  });
+  for (PlaneBlocks& m : mixed) m = m * (1 / m.a);
+  return mixed;
+}
+
 ParticleOptics ParticleData::optics(std::span<const double> at_um) const {
   ParticleOptics out;
-  std::vector<double> scattering;
-  for (const double w : phase_um) scattering.push_back(std::max(extinction_at(w) * albedo_at(w), kNone));
   std::vector<double> mixed(phase_cosines().size());
   for (const double w : at_um) {
-    const Between at = between(phase_um, w, logarithm);
     std::fill(mixed.begin(), mixed.end(), 0.0);
-    for (const bool up : {false, true}) {
-      const double share = up ? at.share : 1 - at.share;
-      if (!(share > 0)) continue;
-      const size_t i = at.low + (up ? 1 : 0);
-      for (size_t c = 0; c < mixed.size(); ++c) mixed[c] += share * scattering[i] * phase[i][c];
-    }
+    each_phase(w, [&](size_t i, double weight) {
+      for (size_t c = 0; c < mixed.size(); ++c) mixed[c] += weight * phase[i][c];
+    });
     out.add(extinction_at(w), albedo_at(w), mixed);
   }
+  if (!matrices.empty())
+    out.know_matrices(
+        [data = *this, all = std::vector(at_um.begin(), at_um.end())](size_t w) { return data.matrices_at(all[w]); });
   return out;
 }
 

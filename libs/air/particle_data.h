@@ -19,6 +19,8 @@ struct ParticleData {
   std::vector<double> extinction, albedo;  // at these
   std::vector<double> phase_um;            // ascending, one at least
   std::vector<std::vector<double>> phase;  // at these, over phase_cosines(), 1/sr
+  // Scattering matrices over P11, likewise; empty: not known.
+  std::vector<std::vector<PlaneBlocks>> matrices;
 
   double extinction_at(double wavelength_um) const;
   double albedo_at(double wavelength_um) const;
@@ -28,6 +30,12 @@ struct ParticleData {
   std::optional<double> green() const;
   // The wavelengths lie within its own. Error: as ParticleOptics::add.
   ParticleOptics optics(std::span<const double> at_um) const;
+
+ private:
+  // What each entry of `phase` counts at a wavelength: use(entry, weight).
+  template <class Use>
+  void each_phase(double wavelength_um, const Use& use) const;
+  std::vector<PlaneBlocks> matrices_at(double wavelength_um) const;
 };
 
 // The same with its extinction over that at 0.55 um. Error: that is 0 or unknown.

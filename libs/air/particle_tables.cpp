@@ -35,6 +35,9 @@ constexpr double kWaterPhaseWavelengths[] = {
 constexpr short kWaterPhase[] = {
 #include "air/tables/water_phase.inc"
 };
+constexpr short kWaterMatrix[] = {
+#include "air/tables/water_matrix.inc"
+};
 constexpr double kIceWavelengths[] = {
 #include "air/tables/ice_wavelengths.inc"
 };
@@ -52,6 +55,7 @@ constexpr const char* kAerosolNames[] = {"rural", "maritime", "urban", "free_tro
 constexpr size_t kAngles = 133;
 static_assert(std::size(kAerosolPhase) == 17 * std::size(kAerosolWavelengths) * kAngles);
 static_assert(std::size(kWaterPhase) == std::size(kWaterRadii) * std::size(kWaterPhaseWavelengths) * kAngles);
+static_assert(std::size(kWaterMatrix) == 3 * std::size(kWaterPhase));
 static_assert(std::size(kWater) == 2 * std::size(kWaterRadii) * std::size(kWaterWavelengths));
 static_assert(std::size(kIce) == 3 * std::size(kIceRadii) * std::size(kIceWavelengths));
 
@@ -85,6 +89,17 @@ std::vector<double> ParticleTable::corner_phase(size_t entry) const {
   return refined_phase(logs);
 }
 
+std::vector<PlaneBlocks> ParticleTable::corner_matrices(size_t entry) const {
+  constexpr double kUnit = 1e-3;
+  const short* differences = &matrix[entry * 3 * kAngles];
+  std::vector<PlaneBlocks> stored(kAngles, PlaneBlocks::of(1, 0, 0, 0));
+  for (double PlaneBlocks::*const of : {&PlaneBlocks::b, &PlaneBlocks::c, &PlaneBlocks::d}) {
+    int sum = 0;
+    for (PlaneBlocks& m : stored) m.*of = kUnit * (sum += *differences++);
+  }
+  return refined_matrices(stored);
+}
+
 // The four corners around a wavelength and a state.
 template <class Use>
 void ParticleTable::corners(std::span<const double> wavelengths, double wavelength_um, const Between& s,
@@ -114,6 +129,19 @@ ParticleTable::Value ParticleTable::at(double wavelength_um, double state, doubl
   });
   for (double& p : value.phase) p /= scattered;
   return value;
+}
+
+std::vector<PlaneBlocks> ParticleTable::matrices(double wavelength_um, double state, double (*scale)(double)) const {
+  std::vector<PlaneBlocks> sum(phase_cosines().size(), PlaneBlocks{0, 0, 0, 0, 0, 0});
+  corners(phase_wavelengths_um, wavelength_um, between(states, state, scale),
+          [&](double share, size_t entry, size_t own_state, double own_um) {
+            const double scattering = share * std::max(scattering_at(own_um, own_state), 1e-9);
+            const std::vector<double> part = corner_phase(entry);
+            const std::vector<PlaneBlocks> own = corner_matrices(entry);
+            for (size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + own[i] * (scattering * part[i]);
+          });
+  for (PlaneBlocks& m : sum) m = m * (1 / m.a);
+  return sum;
 }
 
 // By all particles of a state, interpolated over the wavelengths of the bulk.
@@ -154,6 +182,7 @@ ParticleTable water_table() {
   table.states = kWaterRadii;
   fill(table, kWater, 2, false);
   table.phase = kWaterPhase;
+  table.matrix = kWaterMatrix;
   return table;
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "math/mueller.h"
+
 namespace suite {
 
 // A place between two nodes: (1 - share) of `low`, share of low + 1.
@@ -21,6 +23,9 @@ struct ParticleTable {
   std::vector<double> extinction, absorbed;  // [state][wavelength]; absorbed: share of the extinction, 1 - albedo
   std::span<const short> phase;   // [state][phase wavelength][stored angle], thousandths of ln, by differences
   std::vector<double> asymmetry;  // instead of a phase function: Henyey-Greenstein's
+  // [state][phase wavelength][P12, P33, P34][stored angle], thousandths of P11, by differences; empty: not known.
+  std::span<const short> matrix;
+  bool has_matrices() const { return !matrix.empty(); }
 
   // Interpolated: logarithms of extinction and of what is absorbed; phase functions mixed by what they scatter.
   struct Value {
@@ -28,9 +33,12 @@ struct ParticleTable {
     std::vector<double> phase;  // over phase_cosines()
   };
   Value at(double wavelength_um, double state, double (*scale)(double)) const;
+  // Scattering matrices over P11, over phase_cosines(), of the same mixture.
+  std::vector<PlaneBlocks> matrices(double wavelength_um, double state, double (*scale)(double)) const;
 
  private:
   std::vector<double> corner_phase(size_t entry) const;
+  std::vector<PlaneBlocks> corner_matrices(size_t entry) const;
   double scattering_at(double wavelength_um, size_t state) const;
   template <class Use>
   void corners(std::span<const double> wavelengths, double wavelength_um, const Between& state, const Use& use) const;

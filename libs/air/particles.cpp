@@ -6,6 +6,7 @@
 #include "air/particle_data.h"
 #include "air/particle_tables.h"
 #include "air/phase_grid.h"
+#include "air/spheres.h"
 #include "base/error.h"
 #include "math/share.h"
 #include "optics/phases/cosine_table.h"
@@ -32,6 +33,10 @@ ParticleOptics from_table(const ParticleTable& table, double state, double (*sca
     const ParticleTable::Value value = table.at(w, state, scale);
     optics.add(value.extinction / unit, value.albedo, value.phase);
   }
+  if (table.has_matrices())
+    optics.know_matrices([table, state, scale, all = std::vector(wavelengths.begin(), wavelengths.end())](size_t w) {
+      return table.matrices(all[w], state, scale);
+    });
   return optics;
 }
 
@@ -115,22 +120,10 @@ ParticleOptics particle_optics(const ParticleSpec& spec, std::span<const double>
     check_wavelengths(spec.data->name, wavelengths, own.front(), own.back());
     return spec.data->optics(wavelengths);
   }
+  if (spec.spheres) return sphere_optics(*spec.spheres, wavelengths);
   const ParticleKind& kind = particle_kinds().find(spec.name);
   check_wavelengths(spec.name, wavelengths, kind.low_um, kind.high_um);
   return kind.make(spec, wavelengths);
-}
-
-ParticleOptics sphere_optics(const SizeDistribution& sizes, const std::function<std::complex<double>(double)>& index,
-                             double density, std::span<const double> wavelengths) {
-  if (!(density > 0 && std::isfinite(density))) throw Error(strf("spheres: the density %g is not positive", density));
-  ParticleOptics optics;
-  for (const double w : wavelengths) {
-    const BulkOptics bulk = bulk_optics(sizes, index(w), w, stored_cosines(), 1e-3);
-    std::vector<double> logs(bulk.phase.size());
-    std::transform(bulk.phase.begin(), bulk.phase.end(), logs.begin(), logarithm);
-    optics.add(bulk.mass_extinction(density), bulk.albedo(), refined_phase(logs));
-  }
-  return optics;
 }
 
 std::vector<double> gridded_phase(std::span<const double> angles, std::span<const double> values) {
@@ -151,6 +144,19 @@ std::vector<double> gridded_phase(std::span<const double> angles, std::span<cons
   if (!read.valid()) throw Error("phase function: the values are all zero, or too large");
   std::vector<double> gridded;
   for (const double c : phase_cosines()) gridded.push_back(read.at(c));
+  return gridded;
+}
+
+std::vector<PlaneBlocks> gridded_matrices(std::span<const double> angles, std::span<const PlaneBlocks> over_first) {
+  SUITE_CHECK(angles.size() == over_first.size() && angles.size() >= 2);
+  std::vector<PlaneBlocks> gridded;
+  size_t i = angles.size() - 1;  // the upper angle, going down: cosines ascend
+  for (const double c : phase_cosines()) {
+    while (i > 1 && std::cos(angles[i - 1]) < c) --i;
+    const double low = std::cos(angles[i]), high = std::cos(angles[i - 1]);
+    const double t = std::clamp((c - low) / (high - low), 0.0, 1.0);
+    gridded.push_back(over_first[i] * (1 - t) + over_first[i - 1] * t);
+  }
   return gridded;
 }
 

@@ -146,12 +146,12 @@ std::vector<double> legendre_moments(std::span<const float> values, size_t count
   return moments;
 }
 
-std::vector<double> refined_phase(std::span<const double> log_values) {
+std::vector<double> refined(std::span<const double> values) {
   static const std::vector<double> angle = stored_angles();
-  SUITE_CHECK(log_values.size() == angle.size());
+  SUITE_CHECK(values.size() == angle.size());
   const size_t n = angle.size();
   // Ascending angle here, ascending cosine outside.
-  auto value = [&](size_t i) { return log_values[n - 1 - i]; };
+  auto value = [&](size_t i) { return values[n - 1 - i]; };
   auto slope = [&](size_t i) {
     // At 0 and 180 degrees a phase function is even in the angle.
     if (i == 0 || i + 1 == n) return 0.0;
@@ -163,13 +163,34 @@ std::vector<double> refined_phase(std::span<const double> log_values) {
     const double h = angle[i + 1] - angle[i], a = slope(i) * h, b = slope(i + 1) * h, d = value(i + 1) - value(i);
     for (int k = 0; k < kBetween; ++k) {
       const double t = static_cast<double>(k) / kBetween;
-      fine.push_back(std::exp(value(i) + t * (a + t * (3 * d - 2 * a - b + t * (a + b - 2 * d)))));
+      fine.push_back(value(i) + t * (a + t * (3 * d - 2 * a - b + t * (a + b - 2 * d))));
     }
   }
-  fine.push_back(std::exp(value(n - 1)));
+  fine.push_back(value(n - 1));
   std::reverse(fine.begin(), fine.end());
+  return fine;
+}
+
+std::vector<double> refined_phase(std::span<const double> log_values) {
+  std::vector<double> fine = refined(log_values);
+  for (double& f : fine) f = std::exp(f);
   const double whole = phase_integral(fine);
   for (double& f : fine) f /= whole;
+  return fine;
+}
+
+std::vector<PlaneBlocks> refined_matrices(std::span<const PlaneBlocks> over_first) {
+  const auto element = [&](double PlaneBlocks::*of) {
+    std::vector<double> stored;
+    for (const PlaneBlocks& m : over_first) stored.push_back(m.*of);
+    return refined(stored);
+  };
+  const std::vector<double> b = element(&PlaneBlocks::b), c = element(&PlaneBlocks::c), d = element(&PlaneBlocks::d);
+  std::vector<PlaneBlocks> fine;
+  for (size_t i = 0; i < b.size(); ++i) {
+    const double keep = 1 / std::max(1.0, std::hypot(b[i], c[i], d[i]));
+    fine.push_back(PlaneBlocks::of(1, keep * b[i], keep * c[i], keep * d[i]));
+  }
   return fine;
 }
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "math/mueller.h"
+
 namespace suite {
 
 // Cosines, ascending from -1 to 1.
@@ -28,5 +30,9 @@ std::vector<double> legendre_moments(std::span<const float> values, size_t count
 // sphere.
 std::span<const double> stored_cosines();
 std::vector<double> refined_phase(std::span<const double> log_values);
+// The cubics alone, of any values.
+std::vector<double> refined(std::span<const double> values);
+// The same of the elements of scattering matrices of spheres over their first one, none beyond what exists.
+std::vector<PlaneBlocks> refined_matrices(std::span<const PlaneBlocks> over_first);
 
 }  // namespace suite

@@ -78,7 +78,8 @@ class PolarisedBins {
   PolarisedBins(const Setting& setting, PolarisedSource& to)
       : s_(setting),
         to_(to),
-        vector_(StokesField::Light::polarised, setting.streams),
+        vector_(to.shape().kept == StokesParts::all ? StokesField::Light::circular : StokesField::Light::polarised,
+                setting.streams),
         scalar_(StokesField::Light::intensity, setting.streams),
         layers_(setting.column.layers() - setting.column.ground),
         matrices_(layers_.size()),
@@ -142,7 +143,7 @@ class PolarisedBins {
         const auto layer = static_cast<int>(n), order = static_cast<int>(m);
         StokesMode& own = own_[2 * n + end];
         own = vector_.source(layer, place, order, way);
-        own += -1.0 * StokesMode{scalar_.source(layer, place, order, way).i, 0, 0};
+        own += -1.0 * StokesMode{scalar_.source(layer, place, order, way).i, 0, 0, 0};
         own = vector_.depth_scale(layer) * own;
       }
     add_peak(b, m, c, of_sun);
@@ -154,6 +155,8 @@ class PolarisedBins {
         to_.at(b, l, end, c, m, PolarisedSource::i)[bin_] = static_cast<float>(own.i);
         to_.at(b, l, end, c, m, PolarisedSource::q)[bin_] = static_cast<float>(own.q);
         to_.at(b, l, end, c, m, PolarisedSource::u)[bin_] = static_cast<float>(own.u);
+        if (to_.shape().kept == StokesParts::all)
+          to_.at(b, l, end, c, m, PolarisedSource::v)[bin_] = static_cast<float>(own.v);
       }
   }
 
@@ -224,7 +227,7 @@ namespace {
 // Of a shape's table; refuses what is too large for a machine that renders as well.
 size_t values_of(const PolarisedSource::Shape& s) {
   constexpr double kMost = 2e9;  // bytes
-  const double each = 4.0 * 2 * 3 * static_cast<double>(s.layers * s.cosines.size() * s.orders),
+  const double each = 4.0 * 2 * static_cast<double>(s.parts() * s.layers * s.cosines.size() * s.orders),
                many = static_cast<double>(s.beams) * static_cast<double>(s.bins);
   if (each * many > kMost)
     throw Error(
@@ -249,7 +252,8 @@ PolarisedSource::Place PolarisedSource::place(double cosine) const {
 std::shared_ptr<const PolarisedSource> solve_polarised_source(const AirSpec& spec, const AirColumn& column,
                                                               const SpectralState& state,
                                                               std::span<const AirBeam> beams,
-                                                              std::span<const std::vector<double>> depths) {
+                                                              std::span<const std::vector<double>> depths,
+                                                              StokesParts parts) {
   Setting s{spec, column, beams, depths, state.sample(spec.ground_albedo), {}, std::min(spec.streams, kMostStreams),
             {}};
   size_t orders = 0;
@@ -260,7 +264,7 @@ std::shared_ptr<const PolarisedSource> solve_polarised_source(const AirSpec& spe
   }
   if (orders == 0 || beams.empty()) return nullptr;
   auto source = std::make_shared<PolarisedSource>(
-      PolarisedSource::Shape{column.layers(), column.bins, beams.size(), orders, cosines_of_ways()});
+      PolarisedSource::Shape{column.layers(), column.bins, beams.size(), orders, cosines_of_ways(), parts});
   for (size_t m = 0; m < orders; ++m) {
     auto& of_order = s.ways.emplace_back();
     for (const double c : source->shape().cosines)

@@ -105,13 +105,16 @@ struct Sums {
   double extinction() const { return scattering + absorption; }
   std::array<double, 8> check{};
   std::vector<double> phase;
+  std::vector<PlaneBlocks> matrices;
 };
 
 class Crowd {
  public:
-  Crowd(const SizeDistribution& sizes, std::complex<double> index, double wavelength, std::span<const double> cosines)
+  Crowd(const SizeDistribution& sizes, std::complex<double> index, double wavelength, std::span<const double> cosines,
+        BulkMatrices matrices)
       : sizes_(sizes), index_(index), wavenumber_(2 * kPi / wavelength), cosines_(cosines) {
     sums_.phase.resize(cosines.size());
+    if (matrices == BulkMatrices::all) sums_.matrices.assign(cosines.size(), PlaneBlocks{0, 0, 0, 0, 0, 0});
   }
   void add(double r, double weight) {
     // Below the series' range nothing is scattered that counts.
@@ -125,7 +128,10 @@ class Crowd {
     sums_.scattering += scattering;
     sums_.cosine += scattering * sphere.asymmetry();
     if (cosines_.empty()) return;
-    sphere.add_phase(cosines_, scattering, sums_.phase);
+    if (sums_.matrices.empty())
+      sphere.add_phase(cosines_, scattering, sums_.phase);
+    else
+      sphere.add_matrices(cosines_, scattering, sums_.matrices);
     sphere.add_phase(kCheckCosines, scattering, sums_.check);
   }
   const Sums& sums() const { return sums_; }
@@ -156,9 +162,9 @@ bool converged(const Sums& before, const Sums& now, double tolerance) {
 }  // namespace
 
 BulkOptics bulk_optics(const SizeDistribution& sizes, std::complex<double> index, double wavelength,
-                       std::span<const double> cosines, double tolerance) {
+                       std::span<const double> cosines, double tolerance, BulkMatrices matrices) {
   require(wavelength > 0, "the wavelength", wavelength, "above 0");
-  Crowd crowd(sizes, index, wavelength, cosines);
+  Crowd crowd(sizes, index, wavelength, cosines, matrices);
   const double a = std::log(sizes.low_um()), range = std::log(sizes.high_um()) - a;
   crowd.add(sizes.low_um(), 0.5);
   crowd.add(sizes.high_um(), 0.5);
@@ -181,7 +187,9 @@ BulkOptics bulk_optics(const SizeDistribution& sizes, std::complex<double> index
   bulk.asymmetry = sums.cosine / sums.scattering;
   bulk.volume_um3 = 4 * kPi / 3 * sizes.moment(3);
   bulk.phase = sums.phase;
+  for (size_t i = 0; i < sums.matrices.size(); ++i) bulk.phase[i] = sums.matrices[i].a;
   for (double& p : bulk.phase) p /= sums.scattering;
+  for (const PlaneBlocks& m : sums.matrices) bulk.matrices.push_back(m * (1 / m.a));
   return bulk;
 }
 

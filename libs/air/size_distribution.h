@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "math/mueller.h"
+
 namespace suite {
 
 class SizeDistribution {
@@ -49,6 +51,8 @@ struct BulkOptics {
   double asymmetry = 0;
   double volume_um3 = 0;      // of a particle
   std::vector<double> phase;  // 1/sr at the cosines asked for
+  // Scattering matrices over the phase function there, in the plane of scattering, where they are asked for.
+  std::vector<PlaneBlocks> matrices;
   double albedo() const { return scattering_um2 / extinction_um2; }
   // m2/kg for particles of this density, kg/m3.
   double mass_extinction(double density) const { return extinction_um2 / volume_um3 * 1e6 / density; }
@@ -58,7 +62,9 @@ struct BulkOptics {
 // `tolerance` (relative), and by twenty times that the absorption (or it by 1e-4 times that of the extinction) or, when
 // one is asked for, the phase function at eight angles up to 180 degrees. Error: index or wavelength that Mie's series
 // does not take; no convergence (large spheres with weak absorption at tolerances below some 1e-4).
+enum class BulkMatrices { none, all };
 BulkOptics bulk_optics(const SizeDistribution& sizes, std::complex<double> index, double wavelength_um,
-                       std::span<const double> cosines = {}, double tolerance = 1e-4);
+                       std::span<const double> cosines = {}, double tolerance = 1e-4,
+                       BulkMatrices matrices = BulkMatrices::none);
 
 }  // namespace suite

@@ -25,10 +25,14 @@ struct Scaled {
   GreekMatrix matrix;  // truncated
 };
 
-double element(const StokesMode& x, int s) { return s == 0 ? x.i : s == 1 ? x.q : x.u; }
-StokesMode unit(int s) { return {s == 0 ? 1.0 : 0.0, s == 1 ? 1.0 : 0.0, s == 2 ? 1.0 : 0.0}; }
-// U of light that goes down is kept the other way round.
-double turned(int s) { return s == 2 ? -1 : 1; }
+double element(const StokesMode& x, int s) { return s == 0 ? x.i : s == 1 ? x.q : s == 2 ? x.u : x.v; }
+StokesMode unit(int s) { return {s == 0 ? 1.0 : 0.0, s == 1 ? 1.0 : 0.0, s == 2 ? 1.0 : 0.0, s == 3 ? 1.0 : 0.0}; }
+// U and V of light that goes down are kept the other way round.
+double turned(int s) { return s >= 2 ? -1 : 1; }
+constexpr size_t kParts = 4;  // that light is kept in
+int components_of(StokesField::Light light) {
+  return light == StokesField::Light::intensity ? 1 : light == StokesField::Light::polarised ? 3 : 4;
+}
 
 }  // namespace
 
@@ -43,7 +47,7 @@ struct StokesField::State {
   double cosine = 1, ground = 0, ground_beam = 0;
   int orders = 1;
   std::vector<std::vector<StokesFunctions>> up, down;  // [order][node]
-  // Light at the levels: [order][level][node x 3], U as it is.
+  // Light at the levels: [order][level][node x 4], U and V as they are.
   std::vector<std::vector<Row>> rising, falling;
   // Of the order in hand: components that are not zero, rows, matrices.
   int components = 1, n = 0;
@@ -197,10 +201,11 @@ void StokesField::State::beam_light(int m, const Scaled& l, Row& up_source, Row&
 void StokesField::State::keep(int m, int level, const Row& up_light, const Row& down_light) {
   const auto o = static_cast<size_t>(m), v = static_cast<size_t>(level);
   Row &up_to = rising[o][v], &down_to = falling[o][v];
-  up_to.assign(static_cast<size_t>(3 * nodes()), 0), down_to = up_to;
+  up_to.assign(kParts * static_cast<size_t>(nodes()), 0), down_to = up_to;
   for (int i = 0; i < nodes(); ++i)
     for (int s = 0; s < components; ++s) {
-      const auto from = static_cast<size_t>(i * components + s), to = static_cast<size_t>(3 * i + s);
+      const auto from = static_cast<size_t>(i * components + s),
+                 to = kParts * static_cast<size_t>(i) + static_cast<size_t>(s);
       up_to[to] = up_light[from], down_to[to] = down_light[from] * turned(s);
     }
 }
@@ -216,7 +221,7 @@ void add_product(const Row& a, const Row& x, Row& y, int n) {
 }  // namespace
 
 void StokesField::State::solve_order(int m) {
-  components = light == Light::intensity ? 1 : m == 0 ? 2 : 3;
+  components = m == 0 ? std::min(2, components_of(light)) : components_of(light);
   n = nodes() * components;
   const auto rows = static_cast<size_t>(n), cells = rows * rows;
   Row X(cells), Y(cells), E(cells), product(cells), q_up(rows), q_down(rows), J_up(rows), J_down(rows);
@@ -267,10 +272,11 @@ StokesField::StokesField(Light light, int streams, std::vector<double> views) {
   if (streams < 4 || streams > 40 || streams % 2 != 0) throw Error(strf("%d streams", streams), "4, 6, ... 40");
   for (const double v : views)
     if (!(v > 0 && v <= 1)) throw Error(strf("a view of cosine %g", v), "above 0, at most 1");
-  const size_t rows = (static_cast<size_t>(streams) / 2 + views.size()) * (light == Light::polarised ? 3 : 1);
+  const int components = components_of(light);
+  const size_t rows = (static_cast<size_t>(streams) / 2 + views.size()) * static_cast<size_t>(components);
   if (rows > small::kMostRows)
     throw Error(strf("%d streams and %zu views are too many at once", streams, views.size()),
-                strf("together %d a hemisphere", small::kMostRows / (light == Light::polarised ? 3 : 1)));
+                strf("together %d a hemisphere", small::kMostRows / components));
   state_ = std::make_unique<State>(light, streams, std::move(views));
 }
 StokesField::~StokesField() = default;
@@ -301,8 +307,9 @@ DiffuseFluxes StokesField::fluxes(int level) const {
   DiffuseFluxes f;
   for (int i = 0; i < s.hemisphere; ++i) {
     const double area = 2 * kPi * s.weight_of(i) * s.mu_of(i);
-    f.up += area * rises[static_cast<size_t>(3 * i)], f.down += area * falls[static_cast<size_t>(3 * i)];
-    f.mean_intensity += s.weight_of(i) / 2 * (rises[static_cast<size_t>(3 * i)] + falls[static_cast<size_t>(3 * i)]);
+    const double rise = rises[kParts * static_cast<size_t>(i)], fall = falls[kParts * static_cast<size_t>(i)];
+    f.up += area * rise, f.down += area * fall;
+    f.mean_intensity += s.weight_of(i) / 2 * (rise + fall);
   }
   f.direct = s.cosine * beam(level);
   f.mean_intensity += beam(level) / (4 * kPi);
@@ -318,10 +325,10 @@ StokesMode StokesField::source(int layer, End end, int order, const StokesFuncti
   for (size_t d = o; d < l.matrix.degrees.size(); ++d) {
     StokesMode moment;
     for (size_t i = 0; i < static_cast<size_t>(s.hemisphere); ++i) {
-      const double* const r = &rises[3 * i];
-      const double* const f = &falls[3 * i];
-      moment += s.weight[i] * s.up[o][i].times(d, {r[0], r[1], r[2]});
-      moment += s.weight[i] * s.down[o][i].times(d, {f[0], f[1], f[2]});
+      const double* const r = &rises[kParts * i];
+      const double* const f = &falls[kParts * i];
+      moment += s.weight[i] * s.up[o][i].times(d, {r[0], r[1], r[2], r[3]});
+      moment += s.weight[i] * s.down[o][i].times(d, {f[0], f[1], f[2], f[3]});
     }
     sum += direction.times(d, StokesFunctions::scattered(l.matrix.degrees[d], moment));
   }
@@ -344,8 +351,9 @@ Stokes StokesField::radiance(int level, size_t view, Way way, double phi, std::s
   Stokes sum{};
   for (int m = 0; m < s.orders; ++m) {
     const auto& of = way == Way::up ? s.rising : s.falling;
-    const double* const x = &of[static_cast<size_t>(m)][static_cast<size_t>(level)][3 * node];
-    sum[0] += x[0] * std::cos(m * phi), sum[1] += x[1] * std::cos(m * phi), sum[2] += x[2] * std::sin(m * phi);
+    const double* const x = &of[static_cast<size_t>(m)][static_cast<size_t>(level)][kParts * node];
+    sum[0] += x[0] * std::cos(m * phi), sum[1] += x[1] * std::cos(m * phi);
+    sum[2] += x[2] * std::sin(m * phi), sum[3] += x[3] * std::sin(m * phi);
   }
   if (single.empty()) return sum;
   // Upright, phi says which meridian is meant.

@@ -1,8 +1,8 @@
-// The diffuse light in plane layers of air with its polarisation: I, Q and U under a sun, over a Lambert ground, at one
-// wavelength.
+// The diffuse light in plane layers of air with its polarisation: I, Q and U, and V where it is asked for, under a sun,
+// over a Lambert ground, at one wavelength.
 //
 // Assumes and counts as discrete_ordinates.h does (levels, depths, cosines of travel, secants, tops; delta-M), but that
-// nothing emits, and without V. Stokes vectors are those of meridian frames (math/mueller.h), with phi the azimuth of
+// nothing emits. Stokes vectors are those of meridian frames (math/mueller.h), with phi the azimuth of
 // travel from that of the beam.
 // Method: Gauss's rule over each hemisphere, and the cosines of views as nodes without weight; layers by
 // stokes_layer.h, joined by adding. Radiances take single scattering from the caller's matrices instead of the
@@ -37,10 +37,10 @@ struct StokesProblem {
 
 class StokesField {
  public:
-  // What the light is told by. `intensity` alone is the scalar field, in which nothing is polarised.
-  enum class Light { intensity, polarised };
+  // What the light is told by: I, as the scalar field has it, in which nothing is polarised; I, Q and U; or V as well.
+  enum class Light { intensity, polarised, circular };
   // views: cosines > 0 of directions in which radiance() is wanted, up and down. Error: streams not even or not within
-  // 4..40; nodes and views, times 3 components, above 64 a hemisphere.
+  // 4..40; nodes and views, times 3 (or 4) components, above 64 a hemisphere.
   StokesField(Light light, int streams, std::vector<double> views = {});
   ~StokesField();
   StokesField(StokesField&&) noexcept;
@@ -61,7 +61,7 @@ class StokesField {
   // scattered_once); empty: the truncated ones stand.
   Stokes radiance(int level, size_t view, Way way, double phi, std::span<const Stokes> single) const;
   // What a unit of scaled depth of a layer scatters, at its end, of light that has been scattered or reflected before:
-  // X_m of I, Q and U, m = order < orders(), into directions told by Pi of that order (of `streams` degrees).
+  // X_m of I, Q, U and V, m = order < orders(), into directions told by Pi of that order (of `streams` degrees).
   enum class End { top, bottom };
   StokesMode source(int layer, End end, int order, const StokesFunctions& direction) const;
 

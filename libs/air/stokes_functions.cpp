@@ -19,7 +19,7 @@ StokesMode scattered(const GreekMatrix& matrix, const StokesFunctions& out, cons
 }
 
 StokesMode of_beam(const GreekMatrix& matrix, int order, const StokesFunctions& out, const StokesFunctions& beam) {
-  return (order == 0 ? 1 : 2) / (4 * kPi) * scattered(matrix, out, beam, {1, 0, 0});
+  return (order == 0 ? 1 : 2) / (4 * kPi) * scattered(matrix, out, beam, {1, 0, 0, 0});
 }
 
 }  // namespace suite

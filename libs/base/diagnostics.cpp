@@ -63,6 +63,8 @@ constexpr DiagnosticKind kKinds[] = {
      "nothing, unless the ground varies or shadows matter: then `scattering: traced`"},
     {Dr::stokes_depolarised, kWarning, "more than 1 % of a sensor's light passed what no Mueller matrix is known of",
      "give the materials models that polarise, or read the degree of polarisation as a lower bound"},
+    {Dr::polarised_lamps, kInfo, "lamps have `stokes` and a sensor sees no polarisation: they shine as if unpolarised",
+     "nothing, unless much of their light is mirrored or scattered once: then ask the sensor for `stokes`"},
     // Interfaces and media.
     {Dr::interfaces_coincide, kWarning, "two refracting surfaces lie in each other: only one of them refracts",
      "give the common face one surface with `inside` and `outside`, or leave a gap"},

@@ -36,6 +36,7 @@ enum class Dr : int {
   caustics_not_found = 207,
   stokes_techniques = 208,
   stokes_depolarised = 209,
+  polarised_lamps = 210,
   interfaces_coincide = 301,
   boundary_without_interface = 302,
   index_in_front = 303,

@@ -1,5 +1,7 @@
 #include "lidar/ends.h"
 
+#include "math/instrument_frame.h"
+
 namespace suite {
 
 namespace {
@@ -36,11 +38,6 @@ std::optional<LightPlace> LidarEnd::draw_place(const LightReceiver&, const std::
 LaserEnd::LaserEnd(const LaserBeam& beam, const PulsesAtWork& pulses, size_t bins, const std::optional<Stokes>& stokes)
     : LidarEnd(pulses), beam_(beam), stokes_(stokes), ones_(bins, 1.0f) {
   SUITE_CHECK(!stokes || bins == 1);
-}
-
-PolarFrame frame_about(Dir k, Vec3 x) {
-  const Vec3 e1 = normalized(x - k * dot(x, k));
-  return {e1, cross(k, e1)};
 }
 
 std::optional<LightSample> LaserEnd::sample(const LightReceiver& at, const std::array<double, 4>&, double time) const {

@@ -20,9 +20,6 @@
 
 namespace suite {
 
-// The frame of light that travels along k whose first axis lies in the plane of k and x.
-PolarFrame frame_about(Dir k, Vec3 x);
-
 class LidarEnd : public Light {
  public:
   std::optional<LightSample> sample_member(size_t, double probability, const LightReceiver& at,

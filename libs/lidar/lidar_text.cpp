@@ -5,6 +5,7 @@
 
 #include "base/required.h"
 #include "lidar/pulse_train.h"
+#include "light/light_rows.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -89,12 +90,7 @@ LaserSpec read_laser(const Params& p, const SensorContext& context) {
   laser.wavelength_um = p.number_in("wavelength_um", 0.1, 100, "um");
   laser.width_um = p.number_in("width_um", 1e-9, 0.1, "um", laser.width_um);
   laser.beam = read_beam(p, laser.wavelength_um, context);
-  if (const auto s = p.find("stokes")) {
-    const std::vector<double> v = s->as_numbers();
-    if (v.size() != 4 || !(v[0] == 1) || !(v[1] * v[1] + v[2] * v[2] + v[3] * v[3] <= 1 + 1e-12))
-      throw s->error("'stokes' is no light of intensity 1", "[1, Q, U, V] with Q2 + U2 + V2 at most 1");
-    std::copy(v.begin(), v.end(), laser.stokes.begin());
-  }
+  if (const auto s = p.find("stokes")) laser.stokes = read_stokes(*s);
   return laser;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/interrupt.h"
+#include "math/instrument_frame.h"
 #include "spectral/planck.h"
 #include "transport/dimensions.h"
 #include "transport/serve.h"

@@ -76,7 +76,7 @@ void RangeSink::add(const Contribution& c, SpectralThroughputs& throughputs, con
 void StokesRangeSink::add(std::span<const Contribution> stage, StokesThroughputs& throughputs) {
   for (const Contribution& c : stage) {
     const bool active = laser_ && c.light == sums_.end();
-    const Stokes light = active ? LaserEnd::stokes_of(c.radiance) : Stokes{1, 0, 0, 0};
+    const Stokes light = active ? LaserEnd::stokes_of(c.radiance) : c.source ? *c.source : Stokes{1, 0, 0, 0};
     sums_.add(c, throughputs, throughputs.seen(c, 0, light), throughputs.unknown(c));
   }
 }

@@ -17,6 +17,7 @@
 
 #include "air/shells.h"
 #include "light/light.h"
+#include "math/stokes_parts.h"
 #include "math/vec.h"
 #include "optics/model_spec.h"
 #include "spectral/state.h"
@@ -112,8 +113,8 @@ class Atmosphere {
   // Where its light is that over an even ground: places in the air for paths that find what the scene makes of it
   // (air_vertices.h). Null = none are needed, or wanted.
   virtual const AirVertices* vertices() const { return nullptr; }
-  // What is known of the polarisation of its light, made when first asked for. Null = nothing.
-  virtual const PolarisedAir* polarisation() const { return nullptr; }
+  // What is known of the polarisation of its light, made when first asked for, with V or without. Null = nothing.
+  virtual const PolarisedAir* polarisation(StokesParts = StokesParts::linear) const { return nullptr; }
   // One of them along a ray that goes from a point in a layer in a unit direction. Per bin.
   struct BeamAlong {
     std::span<float> scattered;  // what the layer would send back to `from` if nothing dimmed it, W/(m3 sr um)

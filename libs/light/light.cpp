@@ -22,6 +22,10 @@ std::optional<LightMet> Light::met_surface(const LightReceiver&, const Hit&, uin
   return std::nullopt;
 }
 
+Stokes Light::stokes(uint32_t, Dir, double) const {
+  SUITE_CHECK(!"a light that is not polarised");
+  return {1, 0, 0, 0};
+}
 void Light::add(Dir, double, float, std::span<float>) const {
   throw Bug("a light that has a spectrum was asked to add it");
 }

@@ -15,6 +15,7 @@
 #include <span>
 
 #include "light/light_receiver.h"
+#include "math/mueller.h"
 #include "math/vec.h"
 #include "trace/tracer.h"
 
@@ -38,6 +39,9 @@ struct LightNature {
   static constexpr int kMostDraws = 4;
 };
 
+// Of a source within a light whose light is not polarised; of others Light::stokes tells.
+inline constexpr uint32_t kUnpolarised = 0xffffffff;
+
 struct LightSample {
   Dir direction;                                              // unit, from the place that asks
   double distance = std::numeric_limits<double>::infinity();  // m, of the visibility ray
@@ -47,6 +51,7 @@ struct LightSample {
   double scale = 0;
   // Per bin; null = the shape differs with direction: scale times what Light::add adds.
   const float* spectrum = nullptr;
+  uint32_t source = kUnpolarised;  // for Light::stokes
 };
 
 // A place on a light that stands in the scene, for light that is bent on its way from it.
@@ -68,6 +73,7 @@ struct LightMet {
   double scale = 0;                 // radiance = scale * spectrum
   const float* spectrum = nullptr;  // per bin; null: scale times what Light::add adds
   double density = 0;               // 1/sr, with which sample() draws it from the place; 0 = never
+  uint32_t source = kUnpolarised;   // for Light::stokes
 };
 
 // A beam from outside that the air scatters.
@@ -125,6 +131,9 @@ class Light {
   // Whether sensors at a place see it so; add() is then not asked for their own rays.
   virtual bool is_below(Vec3) const { return false; }
   virtual void add_from_above(const RayFromAbove&, std::span<float>) const {}
+  // The Stokes vector, over its intensity, of light that leaves one of its sources along k, in the meridian frame of k,
+  // at the time of a ray (s). Bug where the source is kUnpolarised.
+  virtual Stokes stokes(uint32_t source, Dir k, double time) const;
   // Those points; null = none. They live as long as the light.
   virtual const FarPoints* points() const { return nullptr; }
   // The beam that the air scatters (Sun, Moon). Its spectrum lives as long as the light.

@@ -44,6 +44,13 @@ Curve LightContext::builtin(const Params& entry, const char* what, const char* k
   return given;
 }
 
+Stokes read_stokes(const Params& p) {
+  const std::vector<double> v = p.as_numbers();
+  if (v.size() != 4 || !(v[0] == 1) || !(v[1] * v[1] + v[2] * v[2] + v[3] * v[3] <= 1 + 1e-12))
+    throw p.error("'stokes' is no light of intensity 1", "[1, Q, U, V] with Q2 + U2 + V2 at most 1");
+  return {v[0], v[1], v[2], v[3]};
+}
+
 void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what) {
   for (const Params& row : table.items()) {
     const std::vector<double> v = row.as_numbers();

@@ -13,6 +13,7 @@
 #include "light/lamp_schedule.h"
 #include "light/light_spec.h"
 #include "light/night/stars.h"
+#include "math/mueller.h"
 #include "motion/sgp4.h"
 
 namespace suite {
@@ -73,6 +74,9 @@ Registry<LightRow>& light_rows();
 std::vector<const LightRow*> light_keys();
 // A light, of the kind that the text says. Located Error for anything wrong.
 LightSpecPtr make_light(const LightRow& first_of_key, const Params& p, const LightContext& context);
+
+// A Stokes vector over its intensity, [1, Q, U, V]. Located Error for one of no light.
+Stokes read_stokes(const Params& p);
 
 // Rows of numbers >= 0 of equal length, appended to `values`. what: for errors, "a sky table".
 void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what);

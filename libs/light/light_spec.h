@@ -89,6 +89,8 @@ class LightSpec {
   virtual bool is_sun() const { return false; }
   // Whether it may send anything at these wavelengths, um.
   virtual bool shines(double low_um, double high_um) const = 0;
+  // Whether some of it is polarised.
+  virtual bool polarised() const { return false; }
   // Adds what it sends. Keeps references to this.
   virtual void add_spectra(std::vector<LightSpectra>& to) const = 0;
   // Its parts, in words, that are met by chance too rarely by a path that is scattered evenly over a hemisphere: with a

@@ -20,7 +20,7 @@ struct PolarisedAir::Scratch {
     bool known = false;
   };
   Row T, depth, keep, even, change, lit;
-  Row near[3], far[3];      // source at both ends of a piece
+  Row near[4], far[4];      // source at both ends of a piece
   Row beam_near, beam_far;  // depths
   std::vector<Once> kinds;  // [beam][kind]
   std::vector<PlaneBlocks> blocks;
@@ -28,9 +28,9 @@ struct PolarisedAir::Scratch {
 
   void fit(size_t bins, size_t count) {
     if (T.size() == bins && kinds.size() == count) return;
-    for (Row* row : {&T, &depth, &keep, &even, &change, &lit, &near[0], &near[1], &near[2], &far[0], &far[1], &far[2],
-                     &beam_near, &beam_far})
-      row->assign(bins, 0.0f);
+    for (Row* row : {&T, &depth, &keep, &even, &change, &lit, &beam_near, &beam_far}) row->assign(bins, 0.0f);
+    for (Row* rows : {near, far})
+      for (size_t part = 0; part < 4; ++part) rows[part].assign(bins, 0.0f);
     kinds.assign(count, {Row(bins), Row(bins), Row(bins), false});
     blocks.resize(bins);
   }
@@ -38,13 +38,19 @@ struct PolarisedAir::Scratch {
 
 PolarisedAir::PolarisedAir(const AirColumn& column, const std::vector<Beam>& beams, const BeamLight& once,
                            std::shared_ptr<const PolarisedSource> source)
-    : column_(column), beams_(beams), once_(once), source_(std::move(source)), bins_(column.bins) {
+    : column_(column),
+      beams_(beams),
+      once_(once),
+      source_(std::move(source)),
+      bins_(column.bins),
+      parts_(source_ ? source_->shape().parts() : 3) {
   constexpr size_t kMostBins = 500;  // 40 MB a height
   if (beams_.empty() || bins_ > kMostBins) return;
   if (beams_.size() == 1) symmetric_ = azimuth(beams_[0].direction);
   sky_ = std::make_unique<SkyTable>(
-      3 * bins_ + 1, false, symmetric_, 1000, [this](double height, Dir d, std::span<float> row) {
-        const Light to{row.first(bins_), row.subspan(bins_, bins_), row.subspan(2 * bins_, bins_)};
+      parts_ * bins_ + 1, false, symmetric_, 1000, [this](double height, Dir d, std::span<float> row) {
+        const Light to{row.first(bins_), row.subspan(bins_, bins_), row.subspan(2 * bins_, bins_),
+                       row.subspan(3 * bins_, tells_v() ? bins_ : 0)};
         row.back() = static_cast<float>(along({0, 0, height}, d, std::numeric_limits<double>::infinity(), to));
       });
 }
@@ -86,16 +92,17 @@ void PolarisedAir::begin(Dir d, Scratch& s) const {
 
 // What the layer has scattered more than once.
 void PolarisedAir::pass_again(const Shells::Piece& piece, Vec3 middle, Dir d, Scratch& s, const Light& to) const {
-  for (size_t part = 0; part < 3; ++part)
+  const size_t parts = to.V.empty() ? 3 : parts_;
+  for (size_t part = 0; part < parts; ++part)
     std::fill(s.near[part].begin(), s.near[part].end(), 0.0f), std::fill(s.far[part].begin(), s.far[part].end(), 0.0f);
   const float near = share(piece.layer, piece.near_height), far = share(piece.layer, piece.far_height);
   const PolarisedSource::Place place = source_->place(std::clamp(dot(column_.shells.up(middle), d), -1.0, 1.0));
   for (size_t b = 0; b < beams_.size(); ++b) {
     const double turn = std::atan2(d.y, d.x) - std::atan2(beams_[b].direction.y, beams_[b].direction.x);
     for (size_t m = 0; m < source_->shape().orders; ++m)
-      for (size_t part = 0; part < (m == 0 ? 2u : 3u); ++part) {
+      for (size_t part = 0; part < (m == 0 ? 2u : parts); ++part) {
         const double angle = static_cast<double>(m) * turn;
-        const auto factor = static_cast<float>(part == PolarisedSource::u ? std::sin(angle) : std::cos(angle));
+        const auto factor = static_cast<float>(part >= PolarisedSource::u ? std::sin(angle) : std::cos(angle));
         const auto of = static_cast<PolarisedSource::Part>(part);
         const float *rows[2][2], weight[2] = {factor * (1 - place.share), factor * place.share};
         for (size_t end = 0; end < 2; ++end)
@@ -107,8 +114,8 @@ void PolarisedAir::pass_again(const Shells::Piece& piece, Vec3 middle, Dir d, Sc
         }
       }
   }
-  const std::span<float> sums[3] = {to.I, to.Q, to.U};
-  for (size_t part = 0; part < 3; ++part)
+  const std::span<float> sums[4] = {to.I, to.Q, to.U, to.V};
+  for (size_t part = 0; part < parts; ++part)
     for (size_t i = 0; i < bins_; ++i)
       sums[part][i] += s.T[i] * (s.near[part][i] * s.even[i] + (s.far[part][i] - s.near[part][i]) * s.change[i]);
 }
@@ -142,7 +149,7 @@ void PolarisedAir::pass_once(size_t b, const Shells::Piece& piece, Vec3 from, Di
 }
 
 double PolarisedAir::along(Vec3 from, Dir d, double distance, const Light& to) const {
-  for (const std::span<float>& row : {to.I, to.Q, to.U}) std::fill(row.begin(), row.end(), 0.0f);
+  for (const std::span<float>& row : {to.I, to.Q, to.U, to.V}) std::fill(row.begin(), row.end(), 0.0f);
   Scratch& s = scratch();
   s.unknown = s.all = 0;
   std::fill(s.T.begin(), s.T.end(), 1.0f);
@@ -165,13 +172,17 @@ double PolarisedAir::sky(Vec3 from, Dir d, const Light& to) const {
   if (!sky_ || std::fabs(from.x) > kFar || std::fabs(from.y) > kFar || !SkyTable::covers(height, local))
     return along(from, d, std::numeric_limits<double>::infinity(), to);
   const float* const row = sky_->drawn(height, local);
-  // The table has the side of rising azimuths; on the other one U has the other sign.
+  // The table has the side of rising azimuths; on the other one U and V have the other sign.
   const bool other = symmetric_ && std::sin(azimuth(d) - *symmetric_) < 0;
   for (size_t i = 0; i < bins_; ++i) {
     to.I[i] = row[i], to.Q[i] = row[bins_ + i];
     to.U[i] = other ? -row[2 * bins_ + i] : row[2 * bins_ + i];
   }
-  return double{row[3 * bins_]};
+  for (size_t i = 0; i < to.V.size(); ++i) {
+    const float v = tells_v() ? row[3 * bins_ + i] : 0;
+    to.V[i] = other ? -v : v;
+  }
+  return double{row[parts_ * bins_]};
 }
 
 }  // namespace suite

@@ -1,6 +1,7 @@
 #include "light/stratified_air.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <mutex>
@@ -44,7 +45,7 @@ class StratifiedAir final : public Atmosphere {
     if (spec.scattering == AirScattering::diffuse)
       diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, &even);
     tabulate_sky();
-    make_polarised_ = [this, spec, state, from] { return polarised(spec, state, from); };
+    make_polarised_ = [this, spec, state, from](StokesParts parts) { return polarised(spec, state, from, parts); };
     if (diffuse_ && spec.adjacency) place_vertices(state, std::move(even.up));
   }
 
@@ -223,9 +224,10 @@ class StratifiedAir final : public Atmosphere {
       for (size_t i = 0; i < bins_; ++i) to[i] += corners.weight[c] * 0.5f * (bottom[i] + top[i]);
     }
   }
-  const PolarisedAir* polarisation() const override {
-    std::call_once(polarised_once_, [this] { isolated([this] { polarised_ = make_polarised_(); }); });
-    return polarised_.get();
+  const PolarisedAir* polarisation(StokesParts parts) const override {
+    Polarised& of = polarised_[parts == StokesParts::all ? 1 : 0];
+    std::call_once(of.once, [&] { isolated([&] { of.air = make_polarised_(parts); }); });
+    return of.air.get();
   }
   size_t beams() const override { return beams_.size(); }
   void beam(size_t b, size_t l, Vec3 from, Dir d, BeamAlong along) const override {
@@ -248,12 +250,12 @@ class StratifiedAir final : public Atmosphere {
   }
 
   std::unique_ptr<const PolarisedAir> polarised(const AirSpec& spec, const SpectralState& state,
-                                                std::span<const AirBeam> from) const {
+                                                std::span<const AirBeam> from, StokesParts parts) const {
     std::shared_ptr<const PolarisedSource> again;
     if (diffuse_) {
       std::vector<std::vector<double>> depths;
       for (size_t b = 0; b < from.size(); ++b) depths.push_back(level_depths(column_, from[b].direction.z, tables_[b]));
-      again = solve_polarised_source(spec, column_, state, from, depths);
+      again = solve_polarised_source(spec, column_, state, from, depths, parts);
     }
     return std::make_unique<const PolarisedAir>(column_, beams_, once_, std::move(again));
   }
@@ -359,9 +361,12 @@ class StratifiedAir final : public Atmosphere {
   std::vector<uint8_t> emits_;   // per layer
   std::unique_ptr<SkyTable> sky_, view_;
   std::unique_ptr<const AirVertices> vertices_;
-  std::function<std::unique_ptr<const PolarisedAir>()> make_polarised_;
-  mutable std::once_flag polarised_once_;
-  mutable std::unique_ptr<const PolarisedAir> polarised_;
+  std::function<std::unique_ptr<const PolarisedAir>(StokesParts)> make_polarised_;
+  struct Polarised {
+    std::once_flag once;
+    std::unique_ptr<const PolarisedAir> air;
+  };
+  mutable std::array<Polarised, 2> polarised_;  // without V, and with it
 };
 
 }  // namespace

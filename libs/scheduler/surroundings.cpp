@@ -327,6 +327,11 @@ std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceS
                        (wide ? "; what it scatters of the night sky is left out: some 17 % of what a camera in "
                                "clear air sees of that at 0.55 um, towards the horizon"
                              : "")});
+  if (!ChannelPlan(sensor.channels()).of_stokes() &&
+      std::any_of(sources.lights.begin(), sources.lights.end(),
+                  [](const LightSpecPtr& light) { return light->polarised(); }))
+    all.push_back({Dr::polarised_lamps,
+                   "sensor '" + sensor.name() + "' sees no polarisation: lamps with `stokes` shine as if unpolarised"});
   if (auto d = diagnose_points(tracer, environment, optics, sensor)) all.push_back(std::move(*d));
   for (Diagnostic& d : diagnose_surroundings(tracer, optics)) all.push_back(std::move(d));
   return all;

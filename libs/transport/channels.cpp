@@ -86,4 +86,9 @@ ChannelPlan::ChannelPlan(std::vector<const ChannelRow*> rows) : rows_(std::move(
   }
 }
 
+StokesParts ChannelPlan::parts() const {
+  const bool v = std::any_of(rows_.begin(), rows_.end(), [](const ChannelRow* row) { return row->component == 3; });
+  return v ? StokesParts::all : StokesParts::linear;
+}
+
 }  // namespace suite

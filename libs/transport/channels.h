@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/registry.h"
+#include "math/stokes_parts.h"
 #include "transport/contribution.h"
 
 namespace suite {
@@ -36,6 +37,7 @@ class ChannelPlan {
   int component(size_t channel) const { return rows_[channel]->component; }
   bool of_water() const { return of_water_; }    // one of them is
   bool of_stokes() const { return of_stokes_; }  // one of them is
+  StokesParts parts() const;                     // of all light that they tell
   bool operator==(const ChannelPlan&) const = default;
 
  private:

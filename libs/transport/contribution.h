@@ -70,10 +70,13 @@ struct Contribution {
   // Light that is known of, but did not arrive (lost_light.h): the chance that a continuation would have met it.
   // Infinite where light arrived.
   float missed = std::numeric_limits<float>::infinity();
-  // Where polarisation is carried: of the scattering towards the light, which is unpolarised; null = none. And the
+  // Where polarisation is carried: of the scattering towards the light; null = none. And the
   // share of the light of which it is not known whether it is polarised.
   const PolarisedEvent* polarised = nullptr;
   float unknown = 0;
+  // The Stokes vector of the light, over its intensity, in the meridian frame of the way on which it left its source;
+  // null = unpolarised.
+  const Stokes* source = nullptr;
   bool arrived() const { return missed == std::numeric_limits<float>::infinity(); }
 };
 

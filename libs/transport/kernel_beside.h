@@ -77,7 +77,10 @@ void PathKernel<Wave>::meet_glow(uint32_t p, const Hit& hit) {
       c.scale *= static_cast<float>(
           Estimator::by_chance(light.nature, path.before * last.draws * met->density / path.last_density));
     c.radiance = met->spectrum;
-    if (c.scale != 0) wave_.contribute();
+    if (c.scale == 0) continue;
+    wave_.leaves(c, met->source, -path.direction, path.time);
+    wave_.contribute();
+    if constexpr (Wave::kStokes) wave_.hand_over();
   }
 }
 

@@ -83,7 +83,8 @@ void PathKernel<Wave>::connect(const PathNode& node, const SampledLight& light, 
                                          sample.direction,
                                          delta ? 0 : sample.density * draws,
                                          static_cast<float>((delta ? sample.scale / draws : sample.scale) / asks),
-                                         sample.spectrum};
+                                         sample.spectrum,
+                                         sample.source};
   wave_.sight_rays.add(distance, !light.nature.wide).set(origin, direction, path.time, path.draw);
 }
 
@@ -222,6 +223,7 @@ void PathKernel<Wave>::shine(const Question& q, size_t i, double passes) {
   if constexpr (Wave::kStokes) {
     c.polarised = wave_.polarise(node, q.direction);
     if (of_air) wave_.lit_by_air(c);
+    wave_.leaves(c, q.source, -q.direction, wave_.time(node));
   }
   wave_.contribute();
   if constexpr (Wave::kStokes) wave_.hand_over();  // the next light has other matrices

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "light/environment.h"
+#include "math/stokes_parts.h"
 #include "sensor/sensor.h"
 #include "transport/contribution.h"
 #include "transport/lane.h"
@@ -42,9 +43,10 @@ struct KernelContext {
   bool receivers = false;   // rays may start at receivers
   bool branches = true;     // paths may go on in more than one way (techniques/splitting.h): their light is one sum
   bool waters = false;      // contributions are to tell what they have to do with water
-  const GlossGuide* gloss = nullptr;     // null: no continuation is drawn towards light that glossy surfaces throw
-  bool stokes = false;                   // paths carry polarisation: only by techniques that tell their matrices
-  const FlatMirrors* mirrors = nullptr;  // null: far points are left to sensors straight ahead alone
+  const GlossGuide* gloss = nullptr;        // null: no continuation is drawn towards light that glossy surfaces throw
+  bool stokes = false;                      // paths carry polarisation: only by techniques that tell their matrices
+  const FlatMirrors* mirrors = nullptr;     // null: far points are left to sensors straight ahead alone
+  StokesParts parts = StokesParts::linear;  // of polarised paths, that the light of the air is to have
 };
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.

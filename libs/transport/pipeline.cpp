@@ -51,7 +51,7 @@ void Pipeline::check_stokes() const {
   if (environment_.atmosphere && !optics_.media().empty())
     throw Error("the light of air around media is known without its polarisation",
                 "Stokes vectors need the air traced: `scattering: traced` for `air`; or no media, or no air");
-  if (environment_.atmosphere && !environment_.atmosphere->polarisation())
+  if (environment_.atmosphere && !environment_.atmosphere->polarisation(channels_.parts()))
     throw Error("the light of this air is known without its polarisation",
                 "Stokes vectors need air with a `profile`, or no air");
 }
@@ -86,7 +86,8 @@ KernelContext Pipeline::context(const Environment& environment) const {
           channels_.of_water(),
           &environment == &environment_ ? gloss_.get() : nullptr,
           channels_.of_stokes(),
-          mirrors_.get()};
+          mirrors_.get(),
+          channels_.parts()};
 }
 
 std::unique_ptr<const GlossGuide> Pipeline::make_gloss() const {

@@ -16,6 +16,7 @@ struct SightQuestion {
   double density;
   float scale;
   const float* spectrum;
+  uint32_t source;  // of the light (LightSample)
 };
 
 // Rays towards lights, as a stage of the kernel has asked for them.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "light/environment.h"
+#include "math/stokes_parts.h"
 #include "transport/contribution.h"
 #include "transport/known_way.h"
 #include "transport/lane.h"
@@ -42,6 +43,7 @@ struct SpaceContext {
   size_t width;
   std::span<const double> knot_probability;  // P_k
   LostLight* lost;                           // null where no light can be lost
+  StokesParts parts = StokesParts::linear;   // of the air's light
 };
 
 class NothingSpace {
@@ -135,7 +137,7 @@ class AirSpace : public NothingSpace {
   static constexpr bool kFills = true;
   static constexpr uint32_t kDense = 2;
   explicit AirSpace(const SpaceContext& c)
-      : NothingSpace(c), air_(*c.environment.atmosphere), seen_(c.optics.state().size()) {}
+      : NothingSpace(c), air_(*c.environment.atmosphere), seen_(c.optics.state().size()), parts_(c.parts) {}
 
   void begin_wave() { seen_.forget(); }
   template <class L>
@@ -152,7 +154,7 @@ class AirSpace : public NothingSpace {
     return air_.sky_radiance(ray.origin, ray.direction, scratch, radiance);
   }
   // Of an air that knows it.
-  const PolarisedAir& polarised_air() const { return *air_.polarisation(); }
+  const PolarisedAir& polarised_air() const { return *air_.polarisation(parts_); }
   bool dims(const Ray& ray, double distance, size_t, std::span<float> transmission, std::span<double>) {
     air_.transmittance(ray.origin, ray.direction, distance, transmission);
     return true;
@@ -169,6 +171,7 @@ class AirSpace : public NothingSpace {
 
  private:
   KnownWay seen_;  // of sensors' rays
+  StokesParts parts_;
 };
 
 }  // namespace suite

@@ -48,21 +48,19 @@ Stokes StokesThroughputs::seen(const Contribution& c, size_t bin, const Stokes& 
   return rows * (c.polarised->matrices[c.polarised->matrices.size() == 1 ? 0 : bin] * light);
 }
 
-// As lights of scenes are.
-static constexpr Stokes kUnpolarised{1, 0, 0, 0};
-
 void StokesThroughputs::shine_stokes(const Contribution& c, float scale, const Targets& targets) {
   const uint32_t p = c.path;
+  const Stokes light = c.source ? *c.source : Stokes{1, 0, 0, 0};
   const bool grey = grey_[p] && (!c.polarised || c.polarised->matrices.size() == 1);
   if (grey) {
-    const Stokes s = seen(c, 0, kUnpolarised);
+    const Stokes s = seen(c, 0, light);
     for (size_t k = 0; k < 4; ++k)
       if (targets.of[k] != kNone && s[k] != 0)
         shine(p, c.factor, scale * static_cast<float>(s[k]), c.radiance, targets.of[k]);
     return;
   }
   for (size_t b = 0; b < bins(); ++b) {
-    const Stokes s = seen(c, b, kUnpolarised);
+    const Stokes s = seen(c, b, light);
     for (size_t k = 0; k < 4; ++k) spectrum_[k * bins() + b] = static_cast<float>(s[k]);
   }
   for (size_t k = 0; k < 4; ++k)

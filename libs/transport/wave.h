@@ -42,9 +42,10 @@ struct PolarisedScratch {
   SuffixMatrices suffix;
   Interaction at;
   struct {
-    std::vector<float> I, Q, U;  // Q and U over I
+    std::vector<float> I, Q, U, V;  // Q, U and V over I; no V where nobody asks
     double unknown = 0;
-  } air;  // light along the last way through it
+  } air;            // light along the last way through it
+  Stokes source{};  // of the light of the contribution under way
 };
 struct NoPolarisedScratch {
   NoMatrices suffix;
@@ -138,6 +139,15 @@ class Wave {
   SUITE_INLINE Contribution& contribution(uint32_t p, uint16_t light);
   void contribute() { ++outbox.pending; }
   void hand_over();
+  // Where polarisation is carried: the contribution's light leaves a source of a light of the environment along k.
+  // Until the next one's is told it has to be handed over.
+  void leaves(Contribution& c, uint32_t source, Dir k, double time) {
+    if constexpr (kStokes) {
+      if (source == kUnpolarised) return;
+      polarisation.source = environment.lights[c.light]->stokes(source, k, time);
+      c.source = &polarisation.source;
+    }
+  }
   // Memory for one spectrum of path p, `count` of which are taken before anything else is handed over.
   std::span<float> dense(uint32_t p, uint32_t count = 1);
 
@@ -176,7 +186,7 @@ Wave<Surfaces, Space, Throughputs, Estimator>::Wave(const KernelContext& c, size
       waters(c),
       surfaces(c.surface, c.optics, width, c.keep_first),
       space(SpaceContext{c.surface, c.optics, c.environment, c.options, width,
-                         std::span<const double>(heroes.probability).first(heroes.count), lost.get()}),
+                         std::span<const double>(heroes.probability).first(heroes.count), lost.get(), c.parts}),
       throughputs(of_paths),
       outbox{sink, std::vector<Contribution>(std::max<size_t>(256, 4 * width))},
       paths(width),
@@ -276,7 +286,7 @@ Contribution& Wave<Surfaces, Space, Throughputs, Estimator>::contribution(uint32
   c.radiance = nullptr;
   c.arrival = path.arrival;
   c.missed = std::numeric_limits<float>::infinity();
-  c.polarised = nullptr, c.unknown = 0;
+  c.polarised = nullptr, c.unknown = 0, c.source = nullptr;
   return c;
 }
 

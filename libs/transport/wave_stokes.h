@@ -59,13 +59,15 @@ const float* Wave<Surfaces, Space, Throughputs, Estimator>::polarise_air(AirWay 
   auto& air = polarisation.air;
   if constexpr (requires { space.polarised_air(); }) {
     for (std::vector<float>* row : {&air.I, &air.Q, &air.U}) row->resize(bins);
-    const PolarisedAir::Light to{air.I, air.Q, air.U};
-    air.unknown = way == AirWay::sky ? space.polarised_air().sky(from, d, to)
-                                     : space.polarised_air().along(from, d, distance, to);
+    const PolarisedAir& knows = space.polarised_air();
+    air.V.resize(knows.tells_v() ? bins : 0);
+    const PolarisedAir::Light to{air.I, air.Q, air.U, air.V};
+    air.unknown = way == AirWay::sky ? knows.sky(from, d, to) : knows.along(from, d, distance, to);
     for (size_t i = 0; i < bins; ++i) {
       air.I[i] = std::max(0.0f, radiance[i] + air.I[i]);
       const float over = air.I[i] > 0 ? 1 / air.I[i] : 0;
       air.Q[i] *= over, air.U[i] *= over;
+      if (!air.V.empty()) air.V[i] *= over;
     }
     return air.I.data();
   }
@@ -81,7 +83,7 @@ void Wave<Surfaces, Space, Throughputs, Estimator>::lit_by_air(Contribution& c) 
     const std::span<Mueller> light = suffix.next(bins);
     for (size_t i = 0; i < bins; ++i) {
       light[i] = Mueller{};
-      const double s[] = {1, air.Q[i], air.U[i], 0};
+      const double s[] = {1, air.Q[i], air.U[i], air.V.empty() ? 0 : air.V[i]};
       for (int k = 0; k < 4; ++k) light[i](k, 0) = s[k];
     }
     suffix.take({false, 0});

@@ -32,6 +32,9 @@ class LampLights final : public LightSpec {
     return std::any_of(lamps_.begin(), lamps_.end(),
                        [&](const LampSpec& lamp) { return shines_between(spectrum_of(lamp), low_um, high_um); });
   }
+  bool polarised() const override {
+    return std::any_of(lamps_.begin(), lamps_.end(), [](const LampSpec& lamp) { return lamp.stokes.has_value(); });
+  }
   void add_spectra(std::vector<LightSpectra>& to) const override {
     for (const LampSpec& lamp : lamps_) add_curve("lamp '" + lamp.name + "'", spectrum_of(lamp), to);
   }
@@ -55,6 +58,12 @@ LampSpec named_lamp(LampSpec::Kind kind, const Params& p, const LightContext& co
   lamp.name = p.text("name", strf("lamp %zu", context.number));
   lamp.kind = kind;
   if (const auto schedule = p.find("schedule")) lamp.schedule = context.schedule(*schedule);
+  if (const auto stokes = p.find("stokes")) lamp.stokes = read_stokes(*stokes);
+  if (const auto axis = p.find("stokes_axis")) {
+    if (!lamp.stokes) throw axis->error("an axis of light that is not polarised", "`stokes: [1, Q, U, V]` beside it");
+    const auto v = axis->as_direction();
+    lamp.stokes_axis = Dir{v[0], v[1], v[2]};
+  }
   return lamp;
 }
 

@@ -5,6 +5,7 @@
 #include "light/earth.h"
 #include "light/kinds/lamp_intensity.h"
 #include "light/kinds/lamps_core.h"
+#include "math/instrument_frame.h"
 
 namespace suite {
 
@@ -261,7 +262,21 @@ std::optional<LightMet> Lamps::met_surface(const LightReceiver& from, const Hit&
   if (!spectrum) return std::nullopt;
   const double dimmed = core_->brightness(core_->spec_of_material[material], hit.position, time);
   if (!(dimmed > 0)) return std::nullopt;
-  return LightMet{dimmed, spectrum, density(from, hit, direction, distance, cosine)};
+  const uint32_t spec = core_->spec_of_material[material];
+  return LightMet{dimmed, spectrum, density(from, hit, direction, distance, cosine),
+                  core_->specs[spec].stokes ? spec : kUnpolarised};
+}
+
+Stokes Lamps::stokes(uint32_t source, Dir k, double time) const {
+  SUITE_CHECK(source < core_->specs.size() + core_->shapes.size());
+  const size_t specs = core_->specs.size();
+  const LampShape* const riding = source < specs ? nullptr : &core_->shapes[source - specs];
+  const uint32_t spec = riding ? riding->spec : source;
+  const LampSpec& s = core_->specs[spec];
+  Dir axis = s.stokes_axis.value_or(core_->frames[spec].x);
+  if (riding)
+    if (const auto carrier = core_->carriers.at(riding->carrier, time)) axis = rotate(carrier->rotation, axis);
+  return frame_rotation(frame_about(k, axis), meridian_frame(k).e1) * *s.stokes;
 }
 
 const float* Lamps::glow(uint32_t material, bool front) const {
@@ -313,6 +328,7 @@ std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability,
   if (!(dimmed > 0)) return std::nullopt;
   LightSample r;
   r.spectrum = core_->spectra[s.spec].data();
+  r.source = core_->source_of(s);
   if (s.kind == Kind::point) {
     std::optional<Pose> carrier;
     if (s.carrier != kNone && !(carrier = core_->carriers.at(s.carrier, time))) return std::nullopt;

@@ -38,6 +38,11 @@ struct LampSpec {
   double inner = kPi,
          outer = kPi;  // spot: full within `inner`, nothing beyond `outer` of the axis, rad; smooth between
   std::shared_ptr<const IntensityTable> table;
+  // Of all light that it sends, over its intensity, in frames whose first axis lies as near to `stokes_axis` as it can
+  // be across the light's way (frame_about): a direction in the axes of what it rides on, else of the scene. None: the
+  // x axis that `distribution` counts azimuths from.
+  std::optional<Stokes> stokes;
+  std::optional<Dir> stokes_axis;
   // surface: everything with this material glows, on top of what it scatters and emits as a warm body
   std::string material;
   Curve radiance;                           // W/(m2 sr um)
@@ -76,6 +81,7 @@ class Lamps final : public Light {
   bool draws(const Hit& hit) const override;
   // Radiance that a surface with this material sends to the side of its normal (front) or to its back; null = none.
   const float* glow(uint32_t material, bool front) const;
+  Stokes stokes(uint32_t source, Dir k, double time) const override;
   // Density, 1/sr, with which sample() draws the direction from `at` towards the point `hit` of a glowing surface,
   // met after `distance` (m) at an angle of the given cosine; 0 when that surface is met by chance only.
   double density(const LightReceiver& at, const Hit& hit, Dir direction, double distance, double cosine) const;

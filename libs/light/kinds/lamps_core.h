@@ -42,6 +42,12 @@ struct Lamps::Core {
   void add_map(const LampSpec& spec, const Scene& scene);
   // Of the light of a spec at a place; 0 = it is dark there and then.
   double brightness(uint32_t spec, Vec3 place, double time) const;
+  // Names of sources (LightSample::source): the spec, or where it rides, behind all specs, the shape.
+  uint32_t source_of(const LampShape& shape) const {
+    if (!specs[shape.spec].stokes) return kUnpolarised;
+    if (shape.carrier == kNone) return shape.spec;
+    return static_cast<uint32_t>(specs.size() + static_cast<size_t>(&shape - shapes.data()));
+  }
   uint32_t add_surface(std::optional<LampShape> shape, uint32_t spec, const Hit& middle, const Tracer& tracer);
 };
 

@@ -234,6 +234,7 @@ void Equiangular<Wave>::shine(Wave& wave, const Vertex& v, size_t i) {
   if (wave.waters.any()) c.water = Waters::behind_scattering(path.water);
   c.scale = static_cast<float>(v.weight * scattered * v.sample.scale);
   c.radiance = v.sample.spectrum;
+  wave.leaves(c, v.sample.source, -v.sample.direction, path.time);
   c.arrival += wave.space.optical_way(v.path, i, v.t + distance);
   suffix.contribute(c);
 }

@@ -102,6 +102,7 @@ class Manifold {
   struct Sent {  // towards the last interface
     double scale;
     const float* spectrum;
+    uint32_t source = kUnpolarised;
   };
   // What a node looks for: its questions at one knot after the other, then the sky through chains.
   struct Asking {

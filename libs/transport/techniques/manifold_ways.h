@@ -102,6 +102,7 @@ bool Manifold<Wave>::shine_behind(Wave& wave, const RefractedWay& way, const Ref
     c.radiance = from_light->spectrum;
     c.arrival += arrival;
     if (doubtful) c.missed = 0;  // there may be as much again
+    wave.leaves(c, from_light->source, -way.to, wave.time(node));
     suffix.contribute(c);
   }
   return true;
@@ -131,11 +132,11 @@ auto Manifold<Wave>::sent(Wave& wave, const RefractedQuestion& q, const Refracte
     const auto met = light.met_surface(wave.receiver(node), way.lamp, wave.surface.material(way.lamp), way.to,
                                        way.length, cosine, when);
     if (!met) return std::nullopt;
-    return Sent{q.scale * met->scale * std::fabs(cosine), met->spectrum};
+    return Sent{q.scale * met->scale * std::fabs(cosine), met->spectrum, met->source};
   }
   const auto sample = light.sample_member(q.member, 1, {way.last, {}, true}, {}, when);
   if (!sample) return std::nullopt;
-  return Sent{q.scale * sample->scale * sample->distance * sample->distance, sample->spectrum};
+  return Sent{q.scale * sample->scale * sample->distance * sample->distance, sample->spectrum, sample->source};
 }
 
 }  // namespace suite

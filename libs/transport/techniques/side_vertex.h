@@ -266,6 +266,7 @@ void SideVertex<Wave>::shine(Wave& wave, const Side& side, size_t i, std::span<f
   c.scale = static_cast<float>(side.scale * scattered * sample.scale / denominator * alone(wave, path));
   c.radiance = radiance;
   c.arrival += wave.space.optical_way(p, i, side.flight.length);
+  wave.leaves(c, sample.source, -sample.direction, path.time);
   suffix.contribute(c);
 }
 

@@ -132,6 +132,23 @@ TEST(Mie, RefusesWhatIsNoSphere) {
 }
 
 // Scattering matrices in Bohren & Huffman's sign, computed apart in double precision; printed to 8 digits.
+TEST(Mie, SumsOfMatricesAreThoseOfAmplitudes) {
+  std::vector<double> cosines;
+  for (int i = 0; i <= 40; ++i) cosines.push_back(-1 + i / 20.0);
+  for (const std::complex<double> index : {std::complex<double>(1.33, 0), std::complex<double>(1.6, 0.05)}) {
+    const MieSphere sphere(7.3, index);
+    std::vector<PlaneBlocks> sums(cosines.size(), PlaneBlocks{0, 0, 0, 0, 0, 0});
+    sphere.add_matrices(cosines, 2.5, sums);
+    for (size_t i = 0; i < cosines.size(); ++i) {
+      const PlaneBlocks one = sphere.polarised(cosines[i]);
+      const double p = 2.5 * sphere.phase(cosines[i]);
+      EXPECT_NEAR(sums[i].a, p, 1e-12 * p);
+      for (const auto of : {&PlaneBlocks::b, &PlaneBlocks::c, &PlaneBlocks::d, &PlaneBlocks::a2, &PlaneBlocks::c2})
+        EXPECT_NEAR(sums[i].*of, p * one.*of, 1e-11 * p) << cosines[i];
+    }
+  }
+}
+
 TEST(Mie, MatricesAgreeWithTheTable) {
   std::ifstream file(SUITE_TEST_DATA "/polarisation/mie_sphere.csv");
   int rows = 0;

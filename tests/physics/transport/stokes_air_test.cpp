@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "air/particle_data.h"
+#include "air/spheres.h"
 #include "light/kinds/night_sky.h"
 #include "tests/support/lit_air_kit.h"
 #include "tests/support/message_of.h"
@@ -20,6 +22,18 @@ AirSpec molecules() {
   AirSpec air;
   air.profile = standard_profile("us_standard");
   return air;
+}
+// Spheres as a user brings them who knows their phase function alone.
+std::shared_ptr<const ParticleData> without_matrices(const SphereSpec& spheres) {
+  auto data = std::make_shared<ParticleData>();
+  data->name = spheres.name;
+  data->wavelengths_um = data->phase_um = {0.4, 0.45, 0.55};
+  const ParticleOptics optics = sphere_optics(spheres, data->wavelengths_um);
+  for (size_t w = 0; w < 3; ++w) {
+    data->extinction.push_back(optics.extinction(w)), data->albedo.push_back(optics.albedo(w));
+    data->phase.emplace_back(optics.phase(w).begin(), optics.phase(w).end());
+  }
+  return data;
 }
 struct Sky {
   AirSpec air = molecules();
@@ -89,6 +103,30 @@ TEST(StokesAir, SkyPathAndGlassAreThoseOfTracedAir) {
   EXPECT_GT(largest_z("once", see(sky, AirScattering::single, 64, up), traced, 0.005), 3 * kSigmas);
 }
 
+// Haze of small spheres, whose matrices are known.
+Sky spheres() {
+  Sky sky;
+  sky.air = haze(0.3);
+  sky.air.aerosol->profile = AerosolProfile::exponential(0.3, 2000);
+  sky.air.aerosol->one_kind = true;
+  sky.air.aerosol->boundary.spheres = std::make_shared<const SphereSpec>(
+      SphereSpec{SizeDistribution::log_normal(0.1, 1.6), Curve::constant(1.45), Curve::constant(0.005)});
+  return sky;
+}
+TEST(StokesAir, SpheresPolariseAsInTracedAir) {
+  if (!long_run()) GTEST_SKIP() << "in the long run";
+  const Sky sky = spheres();
+  const auto traced = see(sky, AirScattering::traced, many(1024)), field = see(sky, AirScattering::diffuse, many(256));
+  EXPECT_LT(largest_z("spheres", field, traced, 0.005), kSigmas);
+  for (const StokesSeen& s : field) EXPECT_EQ(s.depolarised, 0);
+  // Control: the same particles, had they no matrices.
+  Sky unknown = sky;
+  unknown.air.aerosol->boundary.spheres = nullptr;
+  unknown.air.aerosol->boundary.data = without_matrices(*sky.air.aerosol->boundary.spheres);
+  EXPECT_GT(largest_z("as if they depolarised", see(unknown, AirScattering::diffuse, many(256)), traced, 0.005),
+            3 * kSigmas);
+}
+
 // A blue sky over snow, and haze, which depolarises in both.
 TEST(StokesAir, OtherAirIsThatOfTracedAir) {
   if (!long_run()) GTEST_SKIP() << "in the long run";
@@ -142,9 +180,10 @@ TEST(StokesAir, AirAroundMediaIsRefused) {
             std::string::npos);
 }
 
-// Haze has no matrices: its share counts as depolarised, and the rest polarises less.
+// Named haze has no matrices: its share counts as depolarised, and the rest polarises less. Spheres have.
 TEST(StokesAir, HazeCountsAsDepolarised) {
-  Sky clear, hazy;
+  const Sky clear, known = spheres();
+  Sky hazy;
   hazy.air = haze(0.3);
   const std::vector<Ray> view{kViews[2]};
   const StokesSeen a = see(clear, AirScattering::diffuse, 64, view)[0],
@@ -153,6 +192,7 @@ TEST(StokesAir, HazeCountsAsDepolarised) {
   EXPECT_GT(b.depolarised, 0.15 * b.S[0]);
   EXPECT_LT(b.depolarised, 0.9 * b.S[0]);
   EXPECT_LT(b.dolp(), 0.8 * a.dolp());
+  EXPECT_EQ(see(known, AirScattering::diffuse, 64, view)[0].depolarised, 0);
 }
 
 }  // namespace

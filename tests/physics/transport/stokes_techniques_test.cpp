@@ -72,13 +72,15 @@ std::shared_ptr<Scene> pool(double scattering) {
 World clear_water() { return under_sun(pool(0), 15, towards({}, 60)); }
 World turbid_water() { return under_sun(pool(0.3), 20, towards({}, 60)); }
 
-// A glowing ball over water.
+// A glowing ball over water, of polarised light.
 World lamp_over_water() {
   World w{pool(0), {}, towards({}, 60)};
   w.scene->materials.push_back(material("shine", lambert(0)));
   place(*w.scene, PrimitiveKind::sphere, {0.4}, 2, translation({0.6, 0.7, 1.5}));
   check_scene(*w.scene, "lamp over water");
-  w.sources.add(glow("shine", 1));
+  LampSpec lamp = glow("shine", 1);
+  lamp.stokes = Stokes{1, 0.5, -0.6, 0.3};
+  w.sources.add(lamp);
   return w;
 }
 
@@ -120,7 +122,9 @@ World fog() {
   place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -2}));
   check_scene(*scene, "fog");
   World w{scene, {}, towards({0, 0, -2}, 60)};
-  w.sources.add(point_lamp({{2.2, 1.5, 0.5}}, 1));
+  LampSpec lamp = point_lamp({{2.2, 1.5, 0.5}}, 1);
+  lamp.stokes = Stokes{1, -0.4, 0.6, 0.3};
+  w.sources.add(lamp);
   return w;
 }
 

@@ -1,9 +1,14 @@
 // Polarisation along whole paths: closed forms and invariances.
 #include <gtest/gtest.h>
 
+#include <complex>
+#include <optional>
+
+#include "math/instrument_frame.h"
 #include "math/warps.h"
 #include "optics/fresnel_mueller.h"
 #include "spectral/planck.h"
+#include "tests/support/lamps_kit.h"
 #include "tests/support/stokes_kit.h"
 
 namespace suite::test {
@@ -67,6 +72,77 @@ TEST(Stokes, AnalysersObeyMalus) {
                          {{{0, 0, 0}, {1, 0, 0}, 0}}, 64, how)[0]
                   .S[0],
               0.125, 1e-6);
+}
+// Polarised lamps: a glowing wall seen directly, in a mirror and through polarizers. Closed forms: the lamp's Stokes
+// vector turned from its axis into the meridian; then Fresnel's matrix.
+const Stokes kOfLamps{1, 0.5, -0.6, 0.3};
+TEST(Stokes, LampsArePolarisedAsTheySay) {
+  const Stokes given = kOfLamps;
+  LampSpec lamp = glow("shine", 2, true);
+  lamp.stokes = given, lamp.stokes_axis = Dir{0, 1, 0};
+  SourceSpecs sources;
+  sources.add(lamp);
+  const auto turned = [&](Dir k) { return frame_rotation(frame_about(k, {0, 1, 0}), meridian_frame(k).e1) * given; };
+  const auto wall = scene_of({quad(100, 3, 0)}, {material("shine", lambert(0))});
+  const auto mirror =
+      scene_of({quad(100, 0, 1), quad(100, 3, 0)}, {material("shine", lambert(0)), material("glass", dielectric(1.5))});
+  for (const auto& [angle, turn] : {std::pair{0.3, 0.4}, std::pair{kBrewster, 2.0}, std::pair{1.2, -1.0}}) {
+    const Dir up = dir_from_angles(angle, turn);
+    Stokes direct = turned(-up);
+    for (double& s : direct) s *= 2;
+    expect_near(see_stokes(wall, sources, {{{}, up, 0}}, 16)[0], direct, 1e-6);
+    // From below it goes down and is thrown up: the ray looks down on the pane between.
+    const Ray ray = {Vec3{0, 0, 1} - Vec3{up.x, up.y, 0}, Dir{up.x, up.y, -up.z}, 0};
+    const Mueller F = ScatteringPlane(-ray.direction, up).matrix(fresnel_reflection(std::cos(angle), 1.5));
+    const StokesSeen mirrored = see_stokes(mirror, sources, {ray}, 256)[0];
+    const Stokes thrown = F * direct;
+    expect_near(mirrored, thrown, 1e-6);
+    for (size_t k = 1; k < 4; ++k)
+      EXPECT_NEAR(mirrored.S[k] * thrown[0], thrown[k] * mirrored.S[0], 1e-6) << "the ratio has no noise";
+    // Behind a polarizer along its own light, across it, and behind two of them.
+    const double axis = 0.5 * std::atan2(direct[2], direct[1]), linear = std::hypot(direct[1], direct[2]);
+    for (const double across : {0.0, kPi / 2}) {
+      Polarimetry how;
+      how.analyser = polarizer(axis + across);
+      const double wanted = 0.5 * (direct[0] + (across > 0 ? -linear : linear));
+      EXPECT_NEAR(see_stokes(wall, sources, {{{}, up, 0}}, 16, how)[0].S[0], wanted, 1e-6);
+      how.analyser = polarizer(axis + across + kPi / 2) * polarizer(axis + across);
+      EXPECT_NEAR(see_stokes(wall, sources, {{{}, up, 0}}, 16, how)[0].S[0], 0, 1e-6);
+    }
+  }
+}
+// A point over rough metal, from one place: M of the metal times the lamp's vector, with one sample and no noise.
+TEST(Stokes, PointsArePolarisedAsTheySay) {
+  const Stokes given = kOfLamps;
+  const auto floor = scene_of({quad(100, 0, 0)}, {material("metal", metal(0.4))});
+  LampSpec point = point_lamp({{1, 2, 3}}, 5);
+  const Ray ray = towards_origin(0.6, 0.3);
+  const auto lit = [&](const std::optional<Stokes>& stokes) {
+    point.stokes = stokes, point.stokes_axis = Dir{0, 1, 0};
+    SourceSpecs one;
+    one.add(point);
+    PipelineOptions once;
+    once.max_nodes = 1;
+    return see_stokes(floor, one, {ray}, 16, {}, once)[0];
+  };
+  // The answer is linear in the lamp's light: columns of the matrix from four lamps, in the frame of the lamp's way.
+  const StokesSeen even = lit(std::nullopt), q = lit(Stokes{1, 1, 0, 0}), u = lit(Stokes{1, 0, 1, 0}),
+                   v = lit(Stokes{1, 0, 0, 1}), mixed = lit(given);
+  const Dir to_lamp = normalized(Vec3{1, 2, 3});
+  const std::complex<double> index(1.39, 7.65);
+  const Dir out = -ray.direction;
+  const PlaneBlocks F = fresnel_reflection(dot(out, normalized(out + to_lamp)), index);
+  const Mueller M = ScatteringPlane(out, to_lamp).matrix(F * (1 / F.a));
+  const Stokes wanted = M * (frame_rotation(frame_about(-to_lamp, {0, 1, 0}), meridian_frame(-to_lamp).e1) * given);
+  EXPECT_GT(even.S[0], 0);
+  // What several facets do depolarises: it adds to I alone.
+  EXPECT_GT(mixed.S[1] * wanted[1], 0);
+  for (const size_t k : {2u, 3u})
+    EXPECT_NEAR(mixed.S[k] * wanted[1], mixed.S[1] * wanted[k], 1e-6 * even.S[0]) << "IQUV"[k];
+  for (size_t k = 0; k < 4; ++k) {
+    const double sum = even.S[k] + 0.5 * (q.S[k] - even.S[k]) - 0.6 * (u.S[k] - even.S[k]) + 0.3 * (v.S[k] - even.S[k]);
+    EXPECT_NEAR(mixed.S[k], sum, 1e-6 * even.S[0]) << "IQUV"[k];
+  }
 }
 // Turning the camera about its axis turns the angle of polarisation and leaves the rest.
 TEST(Stokes, TheImageFrameTurnsWithTheCamera) {

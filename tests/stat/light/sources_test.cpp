@@ -92,6 +92,7 @@ class Asked {
 
 class SourceKinds : public testing::TestWithParam<size_t> {
  protected:
+  bool polarised_ = false;  // what the text of the row says
   const LightRow& row() const { return row_of(GetParam()); }
   // The example's sources, resolved.
   SourceSpecs specs(const Scene& scene) {
@@ -105,6 +106,7 @@ class SourceKinds : public testing::TestWithParam<size_t> {
     std::string text = row().example;
     if (const size_t at = text.find("file: sky.png"); at != std::string::npos)
       text.insert(at, "wavelength_um: [0.45, 0.55, 0.65], ");
+    if (polarised_) text.insert(text.find('{') + 1, "stokes: [1, 0.6, 0.3, -0.2], stokes_axis: [1, 2, 0.5], ");
     const Params root = Params::parse_text(text, folder_ / "example.yaml");
     std::vector<AskedCurve> asked;
     SourceSpecs s = read_sources(root, asked);
@@ -205,6 +207,35 @@ TEST_P(SourceKinds, MembersIncludeTheirProbability) {
   EXPECT_EQ(part->spectrum, whole->spectrum);
   EXPECT_EQ(part->density, 0.25 * whole->density);
   EXPECT_EQ(part->scale, whole->density > 0 ? whole->scale : 4 * whole->scale);
+}
+
+// Lamps tell the Stokes vector that they were given, in the frame of the way of their light; drawn or met by chance.
+// Others are not polarised, and a text that says so is refused.
+TEST_P(SourceKinds, PolarisesAsItSays) {
+  const Stage plain(*this, {0.55});
+  const LightReceiver at{{0, 0, 0}, {}, true};
+  const std::array<double, 4> u{0.3, 0.6, 0.2, 0.7};
+  EXPECT_EQ(plain.source.light().sample(at, u, 0)->source, kUnpolarised);
+  polarised_ = true;
+  if (row().key() != "lamps") {
+    EXPECT_THAT(message_of([&] { Stage refused(*this, {0.55}); }), testing::HasSubstr("stokes"));
+    return;
+  }
+  const Stage stage(*this, {0.55});
+  const Light& light = stage.source.light();
+  const auto drawn = light.sample(at, u, 0);
+  ASSERT_TRUE(drawn);
+  const Dir k = -drawn->direction;
+  const Stokes seen = light.stokes(drawn->source, k, 0);
+  // Turned by the angle from the projection of the axis, [1, 2, 0.5], to the meridian.
+  const Vec3 axis{1, 2, 0.5}, across = normalized(axis - k * dot(axis, k));
+  const Vec3 e1 = meridian_frame(k).e1;
+  const double angle = std::atan2(dot(e1, cross(k, across)), dot(e1, across)), c = std::cos(2 * angle),
+               s = std::sin(2 * angle);
+  const Stokes wanted{1, c * 0.6 + s * 0.3, -s * 0.6 + c * 0.3, -0.2};
+  for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(seen[i], wanted[i], 1e-9) << "IQUV"[i];
+  const auto met = stage.source.met(drawn->direction);
+  EXPECT_EQ(met ? met->source : drawn->source, drawn->source);
 }
 
 TEST_P(SourceKinds, TimeIsThatOfTheRay) {

@@ -71,6 +71,38 @@ TEST(Particles, PhaseFunctionsBySeriesTableAndAsymmetry) {
   EXPECT_NEAR(parse_particles(two, "2").data.optics(at).asymmetry(0), 0.75 * 0.8 - 0.25 * 0.4, 1e-3);
 }
 
+// Scattering matrices beside the phase function: mixed between wavelengths by what is scattered there.
+TEST(Particles, MatricesAreThoseOfTheTable) {
+  const double p = 1 / (4 * kPi);
+  std::string text = kBulk + "wavelength_um angle_deg phase_per_sr p12 p22 p33 p34 p44\n";
+  for (const double um : {0.4, 0.9})
+    for (const double angle : {0.0, 90.0, 180.0}) {
+      const bool across = angle == 90, blue = um == 0.4;
+      text += strf("%g %g %.9g %g 0.9 %g %g %g\n", um, angle, p, across ? (blue ? -0.6 : -0.2) : 0,
+                   angle == 180 ? -0.9
+                   : across     ? 0.3
+                                : 0.9,
+                   across ? 0.1 : 0, angle == 180 ? -0.8 : 0.8);
+    }
+  const double at[] = {0.4, std::sqrt(0.4 * 0.9)};
+  const ParticleOptics o = parse_particles(text, "p.txt").data.optics(at);
+  ASSERT_TRUE(o.matrices());
+  const std::vector<PlaneBlocks> blue = o.matrices()(0), mixed = o.matrices()(1);
+  for (const double cosine : {-1.0, -0.5, 0.0, 0.25, 1.0}) {
+    const PhasePlace place = phase_place(cosine);
+    const auto of = [&](const std::vector<PlaneBlocks>& m) {
+      return m[place.below] * (1 - place.share) + m[place.below + 1] * place.share;
+    };
+    const double across = 1 - std::fabs(cosine);
+    EXPECT_NEAR(of(blue).b, -0.6 * across, 2e-3);
+    EXPECT_NEAR(of(blue).a2, 0.9, 1e-6);
+    EXPECT_NEAR(of(blue).d, 0.1 * across, 1e-3);
+    // Scattering 1.35 and 0.5 at both ends, half way of the logarithms.
+    EXPECT_NEAR(of(mixed).b, across * -(0.6 * 1.35 + 0.2 * 0.5) / 1.85, 2e-3);
+  }
+  EXPECT_FALSE(parse_particles(kBulk + even(), "p.txt").data.optics(at).matrices());
+}
+
 TEST(Particles, WhatShouldBeOneIsMadeSoAndTold) {
   const ReadParticles r = parse_particles(kBulk + even(1.008), "p.txt");
   ASSERT_EQ(r.notes.size(), 1u);
@@ -139,6 +171,10 @@ const Bad kBad[] = {
     {kTable + "0.5 0 0\n0.5 180 0\n", "all zero"},
     {kTable + "0.5 0 -1\n", "p.txt:7:7"},
     {kBulk + even() + even(), "a third block"},
+    {kBulk + "wavelength_um angle_deg phase_per_sr p12\n0.5 0 1 0\n", "1 of the five elements"},
+    {kBulk + "wavelength_um order moment p12 p22 p33 p34 p44\n0.5 0 1 0 1 1 0 1\n", "not of phase functions"},
+    {kBulk + "wavelength_um angle_deg phase_per_sr p12 p22 p33 p34 p44\n0.5 0 1 0.9 1 1 0 1\n",
+     "p.txt:7:1: error: the matrix is none of a scatterer"},
     {kSeries + "0.5 1 0.5\n", "order 1"},
     {kSeries + "0.5 0 1.5\n", "moment"},
     {kSeries + "0.5 0 0.9\n", "the moment of order 0 at 0.5 um is 0.9"},

@@ -55,6 +55,26 @@ TEST(Sources, AirIsReadAsItIsWritten) {
               1e-6);
 }
 
+TEST(Sources, SpheresBySizesAndIndex) {
+  const auto air = [](const char* aerosol, const char* cloud) {
+    return read(strf("atmosphere: {profile: tropical, aerosol: {spheres: {%s}, optical_depth_550: 0.2, "
+                     "scale_height_m: 1000}, clouds: [{spheres: {%s}, base_m: 1000, top_m: 2000, "
+                     "optical_depth_550: 3}]}",
+                     aerosol, cloud))
+        .air;
+  };
+  const auto spec = air("sizes: log_normal, median_radius_um: 0.1, sigma: 1.6, n: 1.5, k: 0.01",
+                        "sizes: gamma, effective_radius_um: 2, effective_variance: 0.1, n: 1.33");
+  const double middle[] = {0.55};
+  EXPECT_NEAR(particle_optics(spec->aerosol->boundary, middle).extinction(0), 1, 1e-12);
+  const ParticleOptics drops = particle_optics(spec->clouds[0].particles, middle);
+  EXPECT_NEAR(spec->clouds[0].content * 1000 * drops.extinction(0), 3, 1e-6);
+  EXPECT_EQ(drops.albedo(0), 1);
+  EXPECT_TRUE(drops.matrices());
+  EXPECT_TRUE(air("sizes: junge, exponent: 3, least_radius_um: 0.1, largest_radius_um: 2, n: 1.5",
+                  "sizes: modified_gamma, shape: 6, slope: 3, n: 1.33, density_kg_m3: 900"));
+}
+
 TEST(Sources, GasesByName) {
   const auto gases = [](const char* name) {
     const SourceSpecs s = read(strf("atmosphere: {profile: tropical, gases: %s}", name));
@@ -121,6 +141,21 @@ const BadCase kBad[] = {
      "effective_radius_um: 50}]}",
      "50"},
     {"atmosphere: {profile: tropical, streams: 7}", "7 streams are not even"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, spheres: {sizes: gamma}}}", "drop one of the two"},
+    {"atmosphere: {profile: tropical, aerosol: {spheres: {sizes: lognormal, n: 1.5}}}", "log_normal"},
+    {"atmosphere: {profile: tropical, aerosol: {spheres: {sizes: log_normal, median_radius_um: 0.1, sigma: 0.5, n: "
+     "1.5}}}",
+     "the geometric standard deviation 0.5 is outside its range"},
+    {"atmosphere: {profile: tropical, aerosol: {spheres: {sizes: log_normal, median_radius_um: 0.1, sigma: 2}}}",
+     "'n'"},
+    {"atmosphere: {profile: tropical, aerosol: {spheres: {sizes: log_normal, median_radius_um: 0.1, sigma: 2, n: 1.5, "
+     "density_kg_m3: 1}}}",
+     "density_kg_m3"},
+    {"lamps: [{kind: point, position_m: [0, 0, 1], intensity: 1, stokes: [1, 0.9, 0.9, 0]}]",
+     "no light of intensity 1"},
+    {"lamps: [{kind: point, position_m: [0, 0, 1], intensity: 1, stokes_axis: [1, 0, 0]}]", "not polarised"},
+    {"sky: {radiance: 1, stokes: [1, 0.5, 0, 0]}", "stokes"},
+    {"sun: {direction: {zenith_deg: 1, azimuth_deg: 0}, stokes: [1, 0, 0, 0.1]}", "stokes"},
     {"atmosphere: {profile: tropical, ground_albedo: 1.2}", "the albedo exceeds 1"},
     {"atmosphere: {profile: tropical, g_points: 99}", "99"},
     {"atmosphere: {profile: tropical, scattering: twice}", "twice"},

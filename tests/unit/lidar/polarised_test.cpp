@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "lidar/ends.h"
+#include "math/instrument_frame.h"
 #include "optics/fresnel_mueller.h"
 #include "optics/models.h"
 #include "tests/support/lidar_kit.h"
