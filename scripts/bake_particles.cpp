@@ -1,5 +1,6 @@
 // Mie's series for scripts/bake_particles: one line in, one line out.
-//   [bulk|phase|matrix] wavelength_um n k tolerance  (share kind a b)...    kind: log_normal | gamma | modified (a = slope, r^1)
+//   [bulk|phase|matrix] wavelength_um n k tolerance  (share kind a b)...    kind: log_normal | gamma | modified (a =
+//   slope, r^1)
 // bulk answers "extinction_um2 albedo asymmetry volume_um3" of a particle of the mixture by number; phase adds the
 // logarithms of the phase function at the stored angles, cosines ascending; matrix in their place P12, P33 and P34 over
 // P11, one after the other.

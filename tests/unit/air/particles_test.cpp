@@ -136,7 +136,8 @@ TEST(ParticlePhase, PolarisesAsItsSpheresDo) {
     phase->polarised(-1, m);
     EXPECT_NEAR(m[0].c, -1, 2e-3);
   }
-  // The table is within 0.06 at single angles. Water of 0.55 um: n = 1.333 (Hale & Querry 1973), gamma distribution of variance 0.1.
+  // The table is within 0.06 at single angles. Water of 0.55 um: n = 1.333 (Hale & Querry 1973), gamma distribution of
+  // variance 0.1.
   const std::vector<double> cosines = {-0.9, -0.765, -0.5, 0.0, 0.5};
   const BulkOptics drops =
       bulk_optics(SizeDistribution::gamma(6, 0.1), {1.333, 2e-9}, 0.55, cosines, 1e-3, BulkMatrices::all);

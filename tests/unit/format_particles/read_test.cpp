@@ -82,7 +82,10 @@ TEST(Particles, MatricesAreThoseOfTheTable) {
                    angle == 180 ? -0.9
                    : across     ? 0.3
                                 : 0.9,
-                   across ? 0.1 : 0, angle == 180 ? -0.8 : 0.8);
+                   across ? 0.1 : 0,
+                   angle == 180 ? -0.8
+                   : across     ? 0.25
+                                : 0.8);
     }
   const double at[] = {0.4, std::sqrt(0.4 * 0.9)};
   const ParticleOptics o = parse_particles(text, "p.txt").data.optics(at);
