@@ -6,6 +6,7 @@
 #include "base/files.h"
 #include "base/outputs.h"
 #include "base/run_app.h"
+#include "sensor/degree_target.h"
 #include "trace/tracer.h"
 
 namespace suite {
@@ -75,14 +76,16 @@ void check_budget(const Budget& asked, Budget stored, const std::string& path) {
 
 // A stored pilot tells what its own kind of target needs.
 void check_kind_of_target(const Simulation& sim, const Budget& asked, const Budget& stored) {
-  if (!asked.relative_error || stored.relative_error) return;
+  if (!asked.relative_error || asked.relative_error == stored.relative_error) return;
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
-      for (const Capture& capture : task.captures)
-        if (!capture.detector_noise.empty())
-          throw UsageError("sensor '" + sensor->name() +
-                           "' was planned by its detector's noise, and its pilot does not hold what --target-error "
-                           "needs: leave it out, or start a new run");
+      for (const Capture& capture : task.captures) {
+        const bool noise = !capture.detector_noise.empty() && !stored.relative_error;
+        if (!noise && !(degree_target_of(*sensor, capture) > 0)) continue;
+        throw UsageError("sensor '" + sensor->name() + "' was planned by " +
+                         (noise ? "its detector's noise" : "the error of its degree of polarisation") +
+                         ", and its pilot does not hold what --target-error needs: leave it out, or start a new run");
+      }
 }
 
 Budget with_more(const RenderOptions& o, const Simulation& sim, const JobOptions& options, Budget budget) {

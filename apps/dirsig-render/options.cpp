@@ -164,8 +164,10 @@ void declare_render(Cli& cli, RenderOptions& o) {
       "PATH=VALUE");
   cli.option("--paths", o.paths,
              "paths per pixel instead of what the sensors ask for; MIN,MAX leaves room for a target", "N|MIN,MAX");
-  cli.option("--target-error", o.target_error, "relative standard error to reach, planned from a pilot without bias",
-             "1%");
+  cli.option(
+      "--target-error", o.target_error,
+      "relative standard error of radiance to reach, planned from a pilot without bias; a dolp_error of the text stays",
+      "1%");
   cli.option("--target-floor", o.target_floor, "radiance, W/(m2 sr um), below which the error is judged absolutely",
              "L");
   cli.option("--target-bands", o.target_bands, "whose error decides: the band at the reference wavelength, or all",

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensor/polarimetry.h"
+
 namespace suite {
 
 namespace {
@@ -11,10 +13,24 @@ namespace {
 struct Moments {
   double variance = 0, mean = 0;
 };
-Moments moments_of(const Accumulators& pilot, size_t problem, size_t band) {
+// Standard error of the degree of linear polarisation, times the radiance; 0 where no light was seen, infinite where
+// one group of samples alone saw any.
+double error_of_degree(const Accumulators& pilot, size_t problem, const JudgedBand& judge) {
+  const size_t values[3] = {judge.band, judge.degree->q, judge.degree->u};
+  double S[3], error[3], C[6];
+  for (size_t a = 0; a < 3; ++a) pilot.estimate(problem, values[a], S[a], error[a]);
+  if (!(S[0] > 0)) return 0;
+  if (std::isinf(error[0])) return INFINITY;
+  for (size_t a = 0, at = 0; a < 3; ++a)
+    for (size_t b = a; b < 3; ++b) C[at++] = pilot.covariance(problem, values[a], values[b]);
+  return linear_polarisation(S, C).degree_error * S[0];
+}
+
+Moments moments_of(const Accumulators& pilot, size_t problem, const JudgedBand& judge) {
   Moments m;
   double error = 0;
-  pilot.estimate(problem, band, m.mean, error);
+  pilot.estimate(problem, judge.band, m.mean, error);
+  if (judge.degree) error = error_of_degree(pilot, problem, judge);
   m.variance = error * error * pilot.paths(problem);
   return m;
 }
@@ -61,7 +77,7 @@ std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, 
   std::vector<double> needs(capture.problems(), 0.0);
   std::vector<Moments> of(capture.problems());
   for (const JudgedBand& judge : judged) {
-    for (size_t i = 0; i < of.size(); ++i) of[i] = moments_of(pilot, i, judge.band);
+    for (size_t i = 0; i < of.size(); ++i) of[i] = moments_of(pilot, i, judge);
     pool_band(capture, of, judge, goals, needs);
   }
   return needs;
@@ -71,7 +87,7 @@ std::vector<double> own_needs_of(const Accumulators& pilot, std::span<const Judg
   std::vector<double> needs(pilot.problems(), 0.0);
   for (const JudgedBand& judge : judged)
     for (size_t i = 0; i < needs.size(); ++i) {
-      const Moments m = moments_of(pilot, i, judge.band);
+      const Moments m = moments_of(pilot, i, judge);
       needs[i] = std::max(needs[i], need(judge, m.variance, m.mean, goals.of(i).absolute_floor));
     }
   return needs;

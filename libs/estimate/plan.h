@@ -14,6 +14,13 @@ struct JudgedBand {
   size_t band = 0;
   double weight = 1;
   std::optional<BandNoise> noise = {};  // what the error is judged beside; none: radiance
+  // Where the error is that of the degree of linear polarisation, absolute: the numbers of the band's Q and U among a
+  // problem's values. It is taken as that of the degree times the radiance, beside radiance.
+  struct Degree {
+    size_t q = 0, u = 0;
+    double target = 0;
+  };
+  std::optional<Degree> degree = {};
   // The square of that, for a problem's radiance and its goal's floor.
   double square_scale(double radiance, double floor) const;
 };

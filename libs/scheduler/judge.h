@@ -7,8 +7,10 @@
 
 namespace suite {
 
-// The bands whose errors decide about a capture, and how much stricter than theirs the strictest target is.
-std::vector<JudgedBand> judged_bands(const Capture& capture, const Budget& budget, const Kit::Bands& bands);
+// The bands whose errors decide about a capture, and how much stricter than theirs the strictest target is; those of
+// radiance first.
+std::vector<JudgedBand> judged_bands(const Sensor& sensor, const Capture& capture, const Budget& budget,
+                                     const Kit::Bands& bands);
 
 class Judge {
  public:
@@ -28,6 +30,8 @@ class Judge {
   ErrorHistogram errors_;
   double with_target_ = 0, at_target_ = 0, at_maximum_ = 0;  // problems
   double target_ = 0, noise_target_ = 0;                     // the largest, beside radiance and beside noise
+  double degree_target_ = 0;                                 // and of the degree of linear polarisation
+  WorstProblem worst_degree_;                                // its error is absolute
   double paths_by_noise_ = 0, paths_by_radiance_ = 0;
 };
 

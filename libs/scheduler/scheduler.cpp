@@ -290,7 +290,7 @@ class Job {
     CaptureLog log;
     std::shared_ptr<const Primed> primed = prime(item, log);
     auto c = std::make_unique<InFlight>(item, primed, sensor, capture, goals_of(item),
-                                        judged_bands(capture, budget_of(item), *primed->kit.bands));
+                                        judged_bands(sensor, capture, budget_of(item), *primed->kit.bands));
     c->work.mine = mine_of(item), c->work.bias = bias_of(options_.biases, sensor.name(), capture.state);
     c->log = std::move(log);
     if (unknown_cap(item)) {

@@ -76,9 +76,14 @@ LinearPolarisation linear_polarisation(const double (&S)[3], const double (&C)[6
                across = s * s * C[3] - 2 * c * s * C[4] + c * c * C[5], with = c * C[1] + s * C[2];
   r.degree = p;
   r.degree_error = std::sqrt(std::max(0.0, along - 2 * p * with + p * p * C[0])) / I;
+  r.angle = std::fmod(0.5 * std::atan2(U, Q) / kDegree + 180, 180.0);
+  if (!std::isfinite(along + across + with + C[0])) {  // nothing is known of the errors
+    r.degree_error = r.angle_error = INFINITY;
+    r.debiased = 0;
+    return r;
+  }
   const double b2 = std::max(0.5 * (along + across), 0.0) / (I * I);
   r.debiased = p > 0 && b2 > 0 ? p - b2 * -std::expm1(-p * p / b2) / (2 * p) : p;
-  r.angle = std::fmod(0.5 * std::atan2(U, Q) / kDegree + 180, 180.0);
   r.angle_error = P > 0 ? 0.5 * std::sqrt(std::max(0.0, across)) / P / kDegree : INFINITY;
   r.undefined = !(p >= 3 * r.degree_error && P > 0);
   return r;

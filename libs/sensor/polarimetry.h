@@ -24,7 +24,7 @@ struct LinearPolarisation {
 };
 // S: I, Q, U; C: covariances of their errors, II, IQ, IU, QQ, QU, UU. The degree is biased upwards by noise; debiased
 // is p - b^2 (1 - exp(-p^2/b^2)) / (2 p) with b the error (S. Plaszczynski et al., MNRAS 439, 2014). NaN where I is not
-// positive.
+// positive; where an error is infinite so are these, and debiased is 0.
 LinearPolarisation linear_polarisation(const double (&S)[3], const double (&C)[6]);
 // The region of a confidence about (Q, U) is where d' C^-1 d is not above this, d being what Q and U are off by and C a
 // covariance of so many degrees of freedom, above 1 (H. Hotelling 1931: n (a^(-2 / (n - 1)) - 1), a = 1 - confidence).

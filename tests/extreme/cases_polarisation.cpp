@@ -1,11 +1,13 @@
 // Polarised light at interfaces and in frames: near Brewster's angle, at grazing incidence, between media that hardly
-// differ, on metals, after many reflections, near the zenith.
+// differ, on metals, after many reflections, near the zenith, straight back, towards the sun.
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
 #include "extreme/case.h"
 #include "optics/fresnel_mueller.h"
+#include "tests/support/conformance.h"
+#include "tests/support/stokes_kit.h"
 
 namespace suite::extreme {
 
@@ -106,6 +108,58 @@ double off_turned_back(double apart) {
   return worst;
 }
 
+// Q/I of what a metal emits at 85 degrees: 1 - R is small there.
+double off_emission(double k) {
+  const double c = std::cos(85 * kDegree);
+  const std::complex<double> index(25.3, k);
+  const PlaneBlocks m = fresnel_reflection(c, index);
+  const Amplitudes e = reflected(c, index);
+  const Long s = std::norm(e.s), p = std::norm(e.p), exact = (s - p) / 2 / (1 - (s + p) / 2);
+  return static_cast<double>(std::fabs(-m.b / (1 - m.a) / exact - 1));
+}
+
+// The matrix of a facet that sends light nearly back where it came from: beyond four times the angle off its limit,
+// which is a mirror's at normal incidence.
+double off_retro(double angle) {
+  const Dir out = dir_from_angles(40 * kDegree, 0.3), in = dir_from_angles(40 * kDegree + angle, 0.3 + 0.4 * angle);
+  const PlaneBlocks b = fresnel_reflection(std::clamp(dot(out, normalized(out + in)), 0.0, 1.0), {1.5, 2});
+  const Mueller m = ScatteringPlane(out, in).matrix(b * (1 / b.a));
+  double worst = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) worst = std::max(worst, std::fabs(m(i, j) - (i != j ? 0 : i < 2 ? 1 : -1)));
+  return std::isfinite(worst) ? std::max(0.0, worst - 4 * angle) : worst;
+}
+
+// What a matte surface sends on of light of a degree of polarisation: its own degree.
+double off_matte(double degree) {
+  const SpectralState state = test::test_state(1);
+  ModelSpec spec = test::lambert(0.4);
+  check_model(spec);
+  const auto model = bake(spec, state);
+  std::vector<Mueller> m(state.size());
+  model->mueller(dir_from_angles(0.3, 0), dir_from_angles(1.1, 2), m);
+  const Stokes seen = m[0] * Stokes{1, degree * std::cos(1.3), degree * std::sin(1.3), 0};
+  return std::hypot(seen[1], seen[2], seen[3]);
+}
+
+std::vector<test::StokesSeen> below_molecules(double depth, const Ray& ray, uint32_t paths, size_t rays,
+                                              StokesFrame frame) {
+  const ModelSpec rayleigh{"rayleigh", {{"depolarisation", 0.0279}}, {}, {}, nullptr};
+  const auto scene = test::slab_scene(test::medium(Curve::constant(0), Curve::constant(depth), rayleigh), 1);
+  SourceSpecs sources;
+  sources.add(SunSpec{{dir_from_angles(60 * kDegree, 0.6), 0, Curve::constant(1)}});
+  Polarimetry how;
+  how.frame = frame;
+  return test::see_stokes(scene, sources, std::vector<Ray>(rays, ray), paths, how);
+}
+// The degree in the frame of the plane of the sun beside that in the meridian frame, near the sun.
+double off_towards_sun(double away) {
+  const Ray up{{0.1, 0.2, -1}, dir_from_angles(60 * kDegree + away, 0.6), 0};
+  const auto one = below_molecules(0.5, up, 64, 1, StokesFrame::scattering_plane),
+             other = below_molecules(0.5, up, 64, 1, StokesFrame::meridian);
+  return std::fabs(one[0].dolp() - other[0].dolp());
+}
+
 Case row(std::string name, std::string reference, double bound, double (*error)(double), Sweep sweep) {
   return {"polarisation",
           std::move(name),
@@ -135,6 +189,12 @@ std::vector<Case> polarisation_cases() {
           {"angle from the zenith", "rad", 0.1, 1e-16, 10}),
       row("frames turned there and back", "the identity", 1e-12, off_turned_back,
           {"angle between them", "rad", 0.1, 1e-12, 10}),
+      row("Q/I that a metal emits at 85 deg", exact, 1e-9, off_emission, {"absorption index k", "1", 90, 1e6, 10}),
+      row("a facet that sends light back", "a mirror's matrix, 4 times the angle off", 1e-12, off_retro,
+          {"angle from straight back", "rad", 0.1, 1e-16, 10}),
+      row("polarised light on a matte surface", "0", 0, off_matte, {"degree of polarisation", "1", 1e-3, 1, 10}),
+      row("degree in the plane of a sun near the view", "that in the meridian frame", 1e-6, off_towards_sun,
+          {"angle from the sun", "rad", 0.1, 1e-16, 10}),
   };
 }
 

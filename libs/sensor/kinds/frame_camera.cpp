@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "math/vec.h"
+#include "sensor/degree_target.h"
 #include "sensor/kinds/rows.h"
 #include "sensor/point_images.h"
 #include "sensor/polarimetry.h"
@@ -13,7 +14,7 @@ namespace suite {
 
 namespace {
 
-class FrameCamera final : public Sensor, public SeesPoints {
+class FrameCamera final : public Sensor, public SeesPoints, public HasDegreeTarget {
  public:
   FrameCamera(const Params& p, const SensorContext& context)
       : deliver_(context.deliver), name_(p.name("name", "camera")) {
@@ -52,6 +53,8 @@ class FrameCamera final : public Sensor, public SeesPoints {
     capture.window = read_window(p);
     capture.convergence = read_convergence(p);
     capture.band_targets = read_band_targets(p, bands_, capture.convergence);
+    degree_target_ = read_degree_target(p, bands_, capture.convergence, capture.band_targets);
+    check_degree_target(degree_target_, channels_, capture.bins);
     tasks_.push_back({name_, capture.window, {capture}});
   }
 
@@ -110,6 +113,7 @@ class FrameCamera final : public Sensor, public SeesPoints {
   std::span<const std::string> channels() const override { return channels_; }
   const Polarimetry* polarimetry() const override { return polarimetry_ ? &*polarimetry_ : nullptr; }
   ImageWishes wishes(const Capture&) const override { return wishes_; }
+  double degree_target(const Capture&) const override { return degree_target_.error; }
 
  private:
   std::function<void(const Delivery&)> deliver_;
@@ -118,6 +122,7 @@ class FrameCamera final : public Sensor, public SeesPoints {
   std::vector<std::string> truth_, channels_;
   ImageWishes wishes_;
   std::optional<Polarimetry> polarimetry_;
+  DegreeTarget degree_target_;
   SpectralState state_;
   std::vector<Task> tasks_;
   Vec3 position_, forward_, right_, down_;

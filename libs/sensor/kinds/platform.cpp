@@ -17,7 +17,7 @@ namespace suite {
 
 namespace {
 
-class Platform final : public Sensor, public SeesPoints {
+class Platform final : public Sensor, public SeesPoints, public HasDegreeTarget {
  public:
   Platform(const Params& p, const SensorContext& context) : context_(context), spec_(read_platform(p, context)) {
     std::vector<std::vector<ImageKey>> keys;
@@ -49,6 +49,9 @@ class Platform final : public Sensor, public SeesPoints {
   const Polarimetry* polarimetry() const override { return spec_.polarimetry ? &*spec_.polarimetry : nullptr; }
   ImageWishes wishes(const Capture& capture) const override {
     return spec_.arrays[spec_.segments[capture.state].array].wishes;
+  }
+  double degree_target(const Capture& capture) const override {
+    return spec_.segments[capture.state].degree_target.error;
   }
   int numbers() const override { return wide_ ? 8 : 4; }
 

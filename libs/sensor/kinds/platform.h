@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sensor/analyser.h"
+#include "sensor/degree_target.h"
 #include "sensor/detectors/detectors.h"
 #include "sensor/lens.h"
 #include "sensor/mount.h"
@@ -74,6 +75,7 @@ struct Segment {
   size_t radiance_bands = 0;
   Convergence convergence;                // of its chips without one of their own
   std::vector<double> band_targets;       // of the radiance bands; empty = the reference decides
+  DegreeTarget degree_target;             // of the degree of polarisation
   std::vector<BandNoise> detector_noise;  // of all bands; empty = the error is judged beside radiance
   std::vector<double> electrons;          // per W/(m2 um) s m2 of irradiance, of each band
   std::unique_ptr<const PointSpread> psf;

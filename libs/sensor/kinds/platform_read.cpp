@@ -90,7 +90,7 @@ void read_noise_target(const Params& p, const PlatformSpec& spec, Segment& s) {
   const auto share = paths && paths->kind() == Params::Kind::map ? paths->find("detector_noise") : std::nullopt;
   if (!share) return;
   const FocalArray& array = spec.arrays[s.array];
-  for (const char* other : {"relative_error", "absolute_floor", "bands"})
+  for (const char* other : {"relative_error", "absolute_floor", "bands", "dolp_error"})
     if (paths->has(other))
       throw paths->at(other).error("the error is judged beside the detector's noise already",
                                    "detector_noise alone, or without it");
@@ -103,6 +103,17 @@ void read_noise_target(const Params& p, const PlatformSpec& spec, Segment& s) {
       throw share->error("a chip of the array has `paths` of its own", "one of them");
   s.convergence.relative_error = share->as_number_in(1e-3, 10, "(share of the detector's noise)");
   s.detector_noise = detector_noise_of(spec, s);
+}
+
+// A target of the degree of polarisation is one for all chips of an array.
+void check_chips_of_degree(const Params& p, const FocalArray& array, const Segment& s) {
+  for (size_t i = s.first_chip; i < s.first_chip + s.chips; ++i) {
+    if (!array.chips[i].convergence) continue;
+    const Params own = p.at("chips")[i].at("paths");
+    if (s.degree_target.error > 0 || (own.kind() == Params::Kind::map && own.has("dolp_error")))
+      throw own.error("one target of the degree of polarisation holds for all chips",
+                      "dolp_error in the `paths` of the array, and none of a chip's own");
+  }
 }
 
 void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, size_t chips, const Params& p,
@@ -118,6 +129,9 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
   s.radiance_bands = s.bands.size();
   s.convergence = read_convergence(p);
   s.band_targets = read_band_targets(p, s.bands, s.convergence);
+  s.degree_target = read_degree_target(p, s.bands, s.convergence, s.band_targets);
+  check_degree_target(s.degree_target, spec.channels, array.time_bins);
+  check_chips_of_degree(p, array, s);
   check_mosaic(p, array, s.bands);
   if (!array.segments.empty() && s.radiance_bands != spec.segments[array.segments[0]].radiance_bands)
     throw bands.error("the chips of an array have the same number of bands");

@@ -1,12 +1,13 @@
 // What sensors with one spectral state and one capture have in common.
 #pragma once
 #include "math/warps.h"
+#include "sensor/degree_target.h"
 #include "sensor/kinds/rows.h"
 #include "sensor/polarimetry.h"
 
 namespace suite {
 
-class SimpleSensor : public Sensor {
+class SimpleSensor : public Sensor, public HasDegreeTarget {
  public:
   SimpleSensor(const Params& p, const SensorContext& context, const std::string& default_name)
       : deliver_(context.deliver),
@@ -18,6 +19,7 @@ class SimpleSensor : public Sensor {
     capture_.window = read_window(p);
     capture_.convergence = read_convergence(p);
     capture_.band_targets = read_band_targets(p, bands_, capture_.convergence);
+    degree_target_ = read_degree_target(p, bands_, capture_.convergence, capture_.band_targets);
   }
   std::string name() const override { return name_; }
   std::span<const SpectralState> states() const override { return states_; }
@@ -28,6 +30,7 @@ class SimpleSensor : public Sensor {
   std::span<const std::string> channels() const override { return channels_; }
   ImageWishes wishes(const Capture&) const override { return wishes_; }
   const Polarimetry* polarimetry() const override { return polarimetry_ ? &*polarimetry_ : nullptr; }
+  double degree_target(const Capture&) const override { return degree_target_.error; }
   void accept(CaptureResult&& result) override {
     Delivery d{*this, lay_out(tasks_, name_)[0][0], std::move(result), bands_, {}, {}, {}, {}};
     if (polarimetry_) {
@@ -40,7 +43,10 @@ class SimpleSensor : public Sensor {
 
  protected:
   // To be called by the constructor once capture_ has its size.
-  void done() { tasks_.push_back({name_, capture_.window, {capture_}}); }
+  void done() {
+    check_degree_target(degree_target_, channels(), capture_.bins);
+    tasks_.push_back({name_, capture_.window, {capture_}});
+  }
   // Adds what a kind has to say to its delivery.
   virtual void finish(Delivery&) const {}
   double moment(double u) const { return capture_.window.begin + u * (capture_.window.end - capture_.window.begin); }
@@ -54,6 +60,7 @@ class SimpleSensor : public Sensor {
   std::optional<Polarimetry> polarimetry_;  // likewise
   std::vector<SpectralState> states_;
   Capture capture_;
+  DegreeTarget degree_target_;
   std::vector<Task> tasks_;
 };
 

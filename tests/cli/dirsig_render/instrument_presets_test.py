@@ -126,6 +126,33 @@ class Presets(unittest.TestCase):
         sensor["instruments"][0]["f_number"] *= 1.42
         self.assertTrue(all(abs(ratio - 1) > 0.1 for *_, ratio in self.ratios([sensor], "dark")))
 
+    def polarimeter(self, name):
+        """Electrons of each image of a preset under an even sky that is not polarised, of few detectors."""
+        sensor = yaml.safe_load(self.texts[name])[0]
+        held = [sensor, *sensor.get("attachments", [])]
+        for array in (a for part in held for i in part.get("instruments", []) for a in i["arrays"]):
+            array["columns"], array["paths"] = SAMPLES, 1
+            if array["readout"]["kind"] == "line":
+                array["readout"]["lines_per_capture"] = 1
+            else:
+                array["rows"] = SAMPLES
+        simulate([sensor], name, "-q", "-j", "2")
+        return {path.stem: numpy.fromfile(path, "<f4").astype(float) for path in sorted((FOLDER / name).glob("*_electrons.img"))}
+
+    def test_polarimeters_split_unpolarised_light(self):
+        for name, beams in (("polder_like", 3), ("3mi_like", 3), ("spexone_like", 2)):
+            electrons = self.polarimeter(name)
+            alike = {}
+            for stem, values in electrons.items():
+                alike.setdefault((values.shape, re.sub(r"_(\d+|s|p)_electrons$|_electrons$", "", stem)), []).append(values)
+            several = [group for group in alike.values() if len(group) > 1]
+            print(name, sorted(electrons))
+            self.assertTrue(several, (name, sorted(electrons)))
+            for group in several:
+                self.assertEqual(len(group), beams, (name, sorted(electrons)))
+                for values in group:
+                    self.assertTrue(numpy.allclose(values, group[0], rtol=1e-4), name)
+
     def test_a_sensor_names_a_preset_and_changes_it(self):
         small = {"kind": "platform", "preset": "msi", "name": "mine", "tasks": [{"start": 0, "stop": 0.001}],
                  "instruments": [{"name": "imager", "f_number": None, "aperture_mm": 75,

@@ -192,6 +192,35 @@ TEST(Plan, counts_follow_from_variance_target_and_limits) {
   EXPECT_EQ(cap_for_total(needs, {goal, {}}, 1), goal.min_paths);
 }
 
+// I, Q and U of four scrambles: Q = 0.3 (1 -+ 0.1), U = 0.4, so that the degree is 0.5 and 0.6 of Q's error is along
+// it.
+TEST(Plan, the_degree_of_polarisation_has_needs_of_its_own) {
+  const auto pilot = [](double of_all, double of_q) {
+    Accumulators a({9, 3, 4});
+    for (size_t i = 0; i < 9; ++i) {
+      for (int s = 0; s < 4; ++s) {
+        const double sign = s % 2 ? 1 : -1, all = 2 * (1 + sign * of_all) * 8;
+        a.sums(i, s)[0] = all, a.sums(i, s)[1] = 0.3 * (1 + sign * of_q) * all, a.sums(i, s)[2] = 0.4 * all;
+      }
+      a.set_paths(i, 32);
+    }
+    return a;
+  };
+  const std::vector<JudgedBand> degree{{0, 1, {}, JudgedBand::Degree{1, 2}}};
+  const double variance = 32 * 0.04 / 12 * std::pow(0.6 * 0.3, 2);
+  for (const double n : needs_of(capture_of(3, 3), pilot(0, 0.1), degree, {})) EXPECT_NEAR(n, variance, 1e-12);
+  EXPECT_NEAR(own_needs_of(pilot(0, 0.1), degree, {})[4], variance, 1e-12);
+  // Light that is brighter and darker alike changes no degree; radiance has needs then.
+  for (const double n : needs_of(capture_of(3, 3), pilot(0.1, 0), degree, {})) EXPECT_NEAR(n, 0, 1e-12);
+  // Both: the larger need, each beside its own target.
+  std::vector<JudgedBand> both{{0}, degree[0]};
+  both[1].weight = std::pow(0.01 / 0.0001, 2);
+  EXPECT_NEAR(needs_of(capture_of(3, 3), pilot(0, 0.1), both, {})[4], 1e4 * variance, 1e-8);
+  // Below a floor the error counts less.
+  EXPECT_NEAR(needs_of(capture_of(3, 3), pilot(0, 0.1), degree, Goals{{32, 64, 0.01, 20}, {}})[4], variance / 100,
+              1e-12);
+}
+
 TEST(Plan, dark_problems_take_the_maximum_unless_a_floor_says_how_dark_is_dark) {
   Accumulators pilot = pilot_of(9, 1e-9, 0.5, 32);
   const std::vector<JudgedBand> band{{0}};

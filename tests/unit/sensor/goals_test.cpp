@@ -127,5 +127,31 @@ TEST(Goals, TargetsOfBandsAreChecked) {
   EXPECT_THAT(message("{bands: [a]}"), HasSubstr("names with relative errors"));
 }
 
+// Q and U of a grey floor under an even sky are 0 without noise, so that only radiance has something to reach.
+TEST(Goals, TheDegreeOfPolarisationHasATarget) {
+  const auto stokes = [](const std::string& paths) { return "stokes: linear\n" + camera(paths); };
+  EXPECT_EQ(mean_paths(stokes("{min: 32, max: 65536, dolp_error: 0.005}")), 32);
+  const double alone = mean_paths(stokes("{min: 32, max: 65536, relative_error: 0.005}")),
+               both = mean_paths(stokes("{min: 32, max: 65536, relative_error: 0.005, dolp_error: 0.001}")),
+               band = mean_paths(stokes("{min: 32, max: 65536, bands: {a: 0.005}, dolp_error: 0.001}"));
+  EXPECT_EQ(both, alone);
+  EXPECT_NEAR(band / alone, 1, 0.05);
+}
+
+TEST(Goals, TargetsOfTheDegreeAreChecked) {
+  auto message = [](const std::string& text) { return message_of([&] { PlatformKit().make(text); }); };
+  EXPECT_THAT(message(camera("{dolp_error: 0.005}")), HasSubstr("does not see Q and U"));
+  EXPECT_THAT(message("stokes: linear\n" + camera("{dolp_error: 0}")), HasSubstr("degree of linear polarisation"));
+  EXPECT_THAT(message("stokes: linear\n" + camera("{dolp_error: 0.01}",
+                                                  "columns: 12\n        time_bins: 2\n        "
+                                                  "readout: {kind: global}")),
+              HasSubstr("time_bins"));
+  EXPECT_THAT(message("stokes: linear\n" +
+                      camera("16",
+                             "chips: [{columns: 3, offset_mm: [-1, 0]}, {columns: 2, offset_mm: [1, 0], paths: "
+                             "{dolp_error: 0.01}}]")),
+              HasSubstr("holds for all chips"));
+}
+
 }  // namespace
 }  // namespace suite

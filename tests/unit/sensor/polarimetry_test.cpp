@@ -83,6 +83,18 @@ TEST(Polarimetry, NoiseRaisesTheDegreeAndIsTakenOff) {
     }
   }
 }
+// Regression: along an axis of the frame the error was 0, elsewhere the debiased degree no number.
+TEST(Polarimetry, UnknownErrorsStayUnknown) {
+  const double C[6] = {INFINITY, 0, 0, INFINITY, 0, INFINITY};
+  for (const double u : {0.0, 0.2}) {
+    const LinearPolarisation p = linear_polarisation({1, 0.3, u}, C);
+    EXPECT_NEAR(p.degree, std::hypot(0.3, u), 1e-15);
+    EXPECT_EQ(p.degree_error, INFINITY);
+    EXPECT_EQ(p.angle_error, INFINITY);
+    EXPECT_EQ(p.debiased, 0);
+    EXPECT_TRUE(p.undefined);
+  }
+}
 TEST(Polarimetry, ErrorsFollowTheCovariances) {
   // Along U alone: the error of the degree is that of U over I, of the angle that of Q.
   const double C[6] = {0, 0, 0, 1e-4, 0, 4e-4};
