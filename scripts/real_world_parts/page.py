@@ -27,7 +27,7 @@ Ours beside what instruments measured, in one command; `--help` says what FOLDER
 """
 
 
-TITLES = {"pasadena": "AVIRIS-NG over Pasadena", "mfrsr": "Shadowband radiometer", "hytes": "HyTES over water", "modtran_paths": "Paths of MODTRAN"}
+TITLES = {"pasadena": "AVIRIS-NG over Pasadena", "mfrsr": "Shadowband radiometer", "hytes": "HyTES over water", "surface": "Irradiance at the ground", "modtran_paths": "Paths of MODTRAN"}
 
 
 def row_text(row):
