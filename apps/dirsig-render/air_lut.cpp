@@ -112,6 +112,31 @@ LutValues errors_of(const AirSpec& air, const LutTable& table, const LutFineness
   return lut_difference(states[middle], lut_state(air, table, middle, finer));
 }
 
+void add_kernels(const AirSpec& air, const LutTable& table, const LutRequest& request, LutResult& result) {
+  result.kernel = *request.kernel;
+  Progress progress("adjacency kernels", static_cast<double>(table.states()), "state");
+  for (size_t k = 0; k < table.states(); ++k) {
+    stop_point();
+    result.kernels.push_back(lut_kernel(air, table, k, request.fineness, result.kernel));
+    progress.add(1);
+  }
+  progress.finish();
+}
+
+void report_kernels(const LutTable& table, const LutResult& result) {
+  double worst = 0;
+  for (const std::vector<LutKernel>& heights : result.kernels)
+    for (const LutKernel& kernel : heights)
+      for (const std::vector<double>& errors : kernel.within_error)
+        worst = std::max(worst, *std::ranges::max_element(errors));
+  note(
+      strf("air LUT: adjacency kernels are of views straight down; shares within a radius have standard errors up to "
+           "%.2g",
+           worst));
+  const std::vector<double>& zeniths = table.axes[static_cast<size_t>(LutAxisOf::view_zenith)].values;
+  if (zeniths.back() > 0) note("air LUT: other views of the table have no kernel: theirs are not round");
+}
+
 void report_errors(const LutTable& table, const LutValues& errors) {
   for (const LutKey key :
        {LutKey::path_reflectance, LutKey::direct_direct, LutKey::up_diffuse, LutKey::spherical_albedo}) {
@@ -160,6 +185,7 @@ int run_air_lut(const RenderOptions& o, const Simulation& sim) {
     located_in(request, [&] {
       result.states = all_states(air, table, request.fineness, kept);
       if (request.check) result.errors = errors_of(air, table, request.fineness, result.states);
+      if (request.kernel) add_kernels(air, table, request, result);
       return 0;
     });
   } catch (const Stopped&) {
@@ -167,6 +193,7 @@ int run_air_lut(const RenderOptions& o, const Simulation& sim) {
     return 128 + stop_signal();
   }
   if (request.check) report_errors(table, result.errors);
+  if (request.kernel) report_kernels(table, result);
   report_limits(air, table);
   const LutNotes notes{{"Conventions", "CF-1.8"},
                        {"title", "quantities for atmospheric correction"},

@@ -69,8 +69,8 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.option(
       "--air-lut", o.air_lut,
       "make a table for atmospheric correction of the simulation's real air and its sensor's bands over the grid "
-      "in this text (formats/air_lut/FORMAT.md), write FOLDER/air_lut.nc and air_lut.csv, and stop; continues from "
-      "what a stopped run has done",
+      "in this text (formats/air_lut/FORMAT.md), write FOLDER/air_lut.nc (netCDF), air_lut.csv and, with "
+      "`zarr: true`, air_lut.zarr, and stop; continues from what a stopped run has done",
       "GRID.yaml");
   cli.option("--against", o.against,
              "with --air and a deck: what the deck's own program wrote (tape7, .json), and the "

@@ -1,10 +1,12 @@
 // Grids of states of the air as text, and tables over them as netCDF, Zarr and CSV. FORMAT.md.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/params.h"
 #include "correction/lut.h"
+#include "correction/lut_kernel.h"
 
 namespace suite {
 
@@ -13,8 +15,9 @@ struct LutRequest {
   LutAxes axes = lut_axes();
   std::string sensor;  // of the simulation; empty: its only one
   LutFineness fineness;
-  bool check = true;  // one state is solved more finely, and the difference kept
-  bool zarr = false;  // the table as Zarr as well
+  bool check = true;                 // one state is solved more finely, and the difference kept
+  bool zarr = false;                 // the table as Zarr as well
+  std::optional<KernelSpec> kernel;  // adjacency kernels are wanted
   std::array<Where, kLutAxes> where;
   Where text;  // as a whole
 };
@@ -38,6 +41,8 @@ auto located_in(const LutRequest& request, Make&& make) {
 struct LutResult {
   std::vector<LutState> states;
   LutValues errors;
+  KernelSpec kernel;                            // of the next
+  std::vector<std::vector<LutKernel>> kernels;  // [state][height], or empty
 };
 using LutNotes = std::vector<std::pair<std::string, std::string>>;  // attributes of the file, such as history
 // Error: cannot be written.

@@ -17,6 +17,18 @@ std::vector<double> ascending(const Params& p, const LutAxis& axis) {
   return values;
 }
 
+KernelSpec kernel_of(const Params& p) {
+  KernelSpec spec;
+  const LutAxis radii{"radii_km", "km", 1e-3, 1000, {}};
+  spec.radii = {0.03, 0.1, 0.3, 1, 2, 5, 10, 30};
+  if (const auto given = p.find("radii_km")) spec.radii = ascending(*given, radii);
+  for (double& r : spec.radii) r *= 1e3;
+  spec.photons = static_cast<uint32_t>(p.integer("photons", 64, 10000000, spec.photons));
+  spec.seed = static_cast<uint64_t>(p.integer("seed", 0, 1LL << 53, 1));
+  p.reject_unread();
+  return spec;
+}
+
 LutRequest request_of(const Params& root) {
   root.at("air_lut").as_integer(1, 1);
   LutRequest request;
@@ -39,6 +51,7 @@ LutRequest request_of(const Params& root) {
   if (request.fineness.streams % 2) throw root.at("streams").error("streams are even", "4, 6, 8, ... 64");
   request.check = root.boolean("check", true);
   request.zarr = root.boolean("zarr", false);
+  if (const auto given = root.find("kernel")) request.kernel = kernel_of(*given);
   root.reject_unread();
   return request;
 }

@@ -62,6 +62,61 @@ void put_angles(Writer& file, const LutTable& table) {
   file.variable("solzen", {}, {&zenith, 1}, {{"units", "degree"}, {"long_name", "zenith angle of the sun"}});
 }
 
+// [band][state][height] of one number a band, or with the radii behind.
+template <class Of>
+std::vector<double> of_kernels(const LutTable& table, const LutResult& result, Of&& of) {
+  std::vector<double> values;
+  for (size_t b = 0; b < table.bands.size(); ++b)
+    for (const std::vector<LutKernel>& heights : result.kernels)
+      for (const LutKernel& kernel : heights) of(kernel, b, values);
+  return values;
+}
+
+// Mean density of the light from around over each ring, 1/km2: the kernel over its integral.
+void append_density(const LutKernel& kernel, const std::vector<double>& radii, size_t b, std::vector<double>& values) {
+  double inner = 0, before = 0;
+  for (size_t r = 0; r < radii.size(); ++r) {
+    const double outer = 1e-3 * radii[r];
+    values.push_back((kernel.within[r][b] - before) / (kPi * (outer * outer - inner * inner)));
+    inner = outer, before = kernel.within[r][b];
+  }
+}
+
+template <class Writer>
+void put_kernels(Writer& file, const LutTable& table, const LutResult& result) {
+  if (result.kernels.empty()) return;
+  std::vector<double> km;
+  for (const double r : result.kernel.radii) km.push_back(1e-3 * r);
+  file.dimension("radius", km, {{"units", "km"}, {"long_name", "outer edge of a ring about the place looked at"}});
+  std::vector<std::string> plain{"wl"};
+  for (const size_t a : running(table))
+    if (a <= static_cast<size_t>(LutAxisOf::height)) plain.emplace_back(table.axes[a].name);
+  std::vector<std::string> ringed = plain;
+  ringed.emplace_back("radius");
+  const auto put = [&](const char* name, const std::vector<std::string>& dimensions, const char* unit, const char* what,
+                       auto&& of) {
+    file.variable(name, dimensions, of_kernels(table, result, of), {{"units", unit}, {"long_name", what}});
+  };
+  const auto rings = [](std::vector<std::vector<double>> LutKernel::*member) {
+    return [member](const LutKernel& k, size_t b, std::vector<double>& to) {
+      for (const std::vector<double>& r : k.*member) to.push_back(r[b]);
+    };
+  };
+  const auto number = [](std::vector<double> LutKernel::*member) {
+    return [member](const LutKernel& k, size_t b, std::vector<double>& to) { to.push_back((k.*member)[b]); };
+  };
+  put("kernel_within", ringed, "1", "share of the light from around that comes from nearer than the radius",
+      rings(&LutKernel::within));
+  put("kernel_within_error", ringed, "1", "standard error of kernel_within", rings(&LutKernel::within_error));
+  put("kernel_density", ringed, "km-2", "adjacency kernel over its integral, mean of the ring that ends at the radius",
+      [&](const LutKernel& k, size_t b, std::vector<double>& to) { append_density(k, result.kernel.radii, b, to); });
+  put("kernel_total", plain, "1", "diffuse transmittance from the ground to a sensor straight above, by photons",
+      number(&LutKernel::total));
+  put("kernel_total_error", plain, "1", "standard error of kernel_total", number(&LutKernel::total_error));
+  put("kernel_around", plain, "1", "share of an even ground's light that comes from around",
+      number(&LutKernel::around));
+}
+
 template <class Writer>
 void put_table(Writer& file, const LutTable& table, const LutResult& result, const LutNotes& notes) {
   file.dimension("wl", of_bands(table, &Band::center_um), {{"units", "nm"}, {"long_name", "centre of the band"}});
@@ -83,6 +138,7 @@ void put_table(Writer& file, const LutTable& table, const LutResult& result, con
         std::string(kLutNames[k]) + "_error", {"wl"}, result.errors[k],
         {{"units", kTexts[k].unit},
          {"long_name", "largest difference of one state from its solution with finer bins and more streams"}});
+  put_kernels(file, table, result);
   file.attribute("RT_mode", std::string("transm"));
   file.attribute("dayofyear", 93LL);  // 1 AU: what ISOFIT takes as its reference
   file.attribute("ISOFIT status", std::string("success"));

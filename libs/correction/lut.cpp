@@ -135,13 +135,17 @@ double widest_bin(const LutTable& table, const LutFineness& fineness) {
   return fineness.widest_um > 0 ? fineness.widest_um : std::min(0.01, 0.5 * narrowest(table.bands));
 }
 
-LutState lut_state(const AirSpec& air, const LutTable& table, size_t state, const LutFineness& fineness) {
-  AirSpec here = air_of_state(air, table, state);
-  here.streams = fineness.streams;
-  here.points.most = fineness.points;
+SpectralState lut_bins(AirSpec& air_of_state, const LutTable& table, const LutFineness& fineness) {
+  air_of_state.streams = fineness.streams;
+  air_of_state.points.most = fineness.points;
   SpectralState wanted = make_state(table.bands, widest_bin(table, fineness), 0, 1);
   wanted.choice = {1e-3, widest_bin(table, fineness), 1};
-  const SpectralState bins = bins_in_air(here, wanted, table.bands).state;
+  return bins_in_air(air_of_state, wanted, table.bands).state;
+}
+
+LutState lut_state(const AirSpec& air, const LutTable& table, size_t state, const LutFineness& fineness) {
+  AirSpec here = air_of_state(air, table, state);
+  const SpectralState bins = lut_bins(here, table, fineness);
   std::vector<CorrectionView> views;
   for (size_t v = 0; v < table.views(); ++v) {
     const std::vector<double> at = values_at(table.axes, kLutStateAxes, kLutAxes - kLutStateAxes, v);

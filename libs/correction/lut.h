@@ -61,6 +61,8 @@ double widest_bin(const LutTable& table, const LutFineness& fineness);
 LutTable make_lut(const AirSpec& air, std::vector<Band> bands, LutAxes axes);
 // The air of a state. Water vapour and ozone are columns above the ground, depths of aerosol as well.
 AirSpec air_of_state(const AirSpec& air, const LutTable& table, size_t state);
+// The bins on which the air of a state is solved, which is set as fine as that.
+SpectralState lut_bins(AirSpec& air_of_state, const LutTable& table, const LutFineness& fineness);
 LutState lut_state(const AirSpec& air, const LutTable& table, size_t state, const LutFineness& fineness);
 
 // Largest difference of two solutions of a state over its views, for each key the bands: an estimate of the error of

@@ -20,12 +20,12 @@ WATER = [1.0, 1.7, 2.5, 3.5]  # g/cm2
 TABLE_CM = 20  # width of the builtin gas tables, cm-1
 
 
-def profile_of(config, out):
-    """The levels of a MODTRAN input as a profile of ours; formats/profile. Returns its water column, g/cm2."""
+def profile_of(config, out, warmer=0.0):
+    """The levels of a MODTRAN input as a profile of ours; formats/profile. Returns its water column, g/cm2. warmer: K, of every level."""
     air = json.loads(config.read_text())["MODTRAN"][0]["MODTRANINPUT"]["ATMOSPHERE"]
     levels = {p["TYPE"]: np.array(p["PROFILE"]) for p in air["PROFILES"]}
     height, pressure, kelvin, water = (levels["PROF_" + k] for k in ("ALTITUDE", "PRESSURE", "TEMPERATURE", "H2O"))
-    rows = "".join("%.9g,%.9g,%.9g,%.9g\n" % row for row in zip(height, pressure, kelvin, water))
+    rows = "".join("%.9g,%.9g,%.9g,%.9g\n" % row for row in zip(height, pressure, kelvin + warmer, water))
     out.write_text("height_km,pressure_hpa,temperature_k,h2o_ppmv\n" + rows)
     mass = 0.622 * 1e-6 * water * pressure / 9.81 * 10  # g/cm2 a unit of ln p
     return float(-np.trapezoid(mass, np.log(pressure)) if hasattr(np, "trapezoid") else -np.trapz(mass, np.log(pressure)))
@@ -45,21 +45,26 @@ def smoothed(um, values):
     return (near * values).sum(1) / near.sum(1)
 
 
+AIR = {"ozone_du": "300", "ppm": "{co2: 411}", "aerosol": "{model: rural, visibility_km: 50}"}
+
+
 class Water:
-    def __init__(self, context):
+    """air: keys of the atmosphere in place of AIR's, None leaves one out; shift_nm, wider: of the bands; warmer: K, of the profile."""
+
+    def __init__(self, context, name="hytes", air=None, shift_nm=0.0, wider=1.0, warmer=0.0, streams=16):
         folder = context.data / "hytes"
         context.work.mkdir(parents=True, exist_ok=True)
-        profile = context.work / "hytes_profile.csv"
-        self.given_water = profile_of(next(iter(sorted(folder.glob("tir_*.json"))), folder / "tir.json"), profile)
+        profile = context.work / (name + "_profile.csv")
+        self.given_water = profile_of(next(iter(sorted(folder.glob("tir_*.json"))), folder / "tir.json"), profile, warmer)
         _, self.um, self.width = columns(folder / "hytes_wavelengths.txt", 3)
         nm, radiance = columns(next(iter(sorted(folder.glob("extracted_points_water*.txt"))), folder / "water.txt"), 2)
         at = [int(np.argmin(abs(nm - 1e3 * x))) for x in self.um]
         self.kelvin = brightness(self.um, 10 * radiance[at])
         self.emissivity = emissivity(self.um)
-        continuum = ", water_continuum: '%s'" % context.continuum if context.continuum else ""
-        self.table = Table(context, "hytes", "profile: '%s', scene_height_m: 1155, ozone_du: 300, ppm: {co2: 411}, aerosol: {model: rural, visibility_km: 50}%s"
-                           % (profile, continuum), gaussian_bands(1e3 * self.um, 1e3 * self.width),
-                           "H2OSTR: %s\nsurface_elevation_km: %g\nobserver_altitude_km: %g\nsolar_zenith: 30\ncheck: false\n" % (WATER, GROUND_KM, SENSOR_KM), ())
+        keys = {**AIR, **(air or {}), **({"water_continuum": "'%s'" % context.continuum} if context.continuum else {})}
+        text = "profile: '%s', scene_height_m: 1155" % profile + "".join(", %s: %s" % row for row in keys.items() if row[1])
+        self.table = Table(context, name, text, gaussian_bands(1e3 * self.um + shift_nm, 1e3 * wider * self.width),
+                           "H2OSTR: %s\nsurface_elevation_km: %g\nobserver_altitude_km: %g\nsolar_zenith: 30\nstreams: %d\ncheck: false\n" % (WATER, GROUND_KM, SENSOR_KM, streams), ())
 
     def seen(self, water, kelvin):
         """Brightness temperature, and transmittance."""
@@ -75,8 +80,12 @@ class Water:
         for _ in range(12):
             base = self.seen(*state)[0][at]
             slopes = np.stack([(self.seen(*(state + step))[0][at] - base) / step.sum() for step in np.diag([0.05, 0.1])], 1)
-            state = state + np.linalg.lstsq(slopes, self.kelvin[at] - base, rcond=None)[0]
-            state[0] = np.clip(state[0], WATER[0], WATER[-1] - 0.06)
+            rest = self.kelvin[at] - base
+            step = np.linalg.lstsq(slopes, rest, rcond=None)[0]
+            inside = np.clip(state[0] + step[0], WATER[0], WATER[-1] - 0.06) - state[0]
+            if inside != step[0]:  # the column ends at a bound: the temperature is the best one there
+                step = np.array([inside, slopes[:, 1] @ (rest - slopes[:, 0] * inside) / (slopes[:, 1] @ slopes[:, 1])])
+            state = state + step
         return state
 
 
@@ -131,4 +140,7 @@ def run(context):
                          "Bands differ from the mean of their neighbours by %.1f K rms from 8.6 to 9.0 um." % (wide.min(), wide.max(), np.sqrt((zigzag**2).mean())),
                          "From 11.3 um on the spectrum falls to %.0f K at 11.9 um. Ours (transmittance %.2f) stays at %.0f K, and no gas absorbs as much there: "
                          "those bands are left out of the fit." % (water.kelvin[far].mean(), up[far].mean(), ours[far].mean())]
+        if not context.continuum:
+            from . import hytes_tried  # it needs this module's classes
+            result.notes += hytes_tried.notes(context, water)
     return result

@@ -80,8 +80,10 @@ def bands_of(day):
 class Sky:
     """Direct transmittance and diffuse over direct normal irradiance in the filters, over [zenith, aerosol depth at 550 nm]."""
 
-    def __init__(self, context, day):
-        table = Table(context, "mfrsr", "profile: us_standard, ozone_du: 310, scene_height_m: 360, aerosol: {model: rural, optical_depth_550: 0.05}", bands_of(day),
+    def __init__(self, context, day, name="mfrsr", model="rural", brighter=1.0):
+        """model: of the aerosol; brighter: factor of the ground's albedo."""
+        self.albedo = {k: brighter * a for k, a in ALBEDO.items()}
+        table = Table(context, name, "profile: us_standard, ozone_du: 310, scene_height_m: 360, aerosol: {model: %s, optical_depth_550: 0.05}" % model, bands_of(day),
                       "H2OSTR: 1\nAOT550: %s\nsurface_elevation_km: 0.36\nsolar_zenith: %s\ncheck: false\n" % (DEPTHS, ZENITHS))
         self.direct = np.moveaxis(table["transm_down_dir"], 0, 1)  # [zenith, depth, filter]
         self.diffuse = np.moveaxis(table["transm_down_dif"], 0, 1)
@@ -132,7 +134,7 @@ def langley(day, sky, good, index, filter_number):
         raise RuntimeError("filter %d: %d times for a Langley plot, 6 are needed" % (filter_number, len(use)))
     zenith = day.zenith[use]
     measured = day.diffuse[filter_number][use] / day.direct[filter_number][use]
-    grid = np.stack([sky.ratio(zenith, np.full(len(use), d), index, ALBEDO[filter_number]) for d in DEPTHS], 1)
+    grid = np.stack([sky.ratio(zenith, np.full(len(use), d), index, sky.albedo[filter_number]) for d in DEPTHS], 1)
     course = np.array([np.interp(m, row, DEPTHS) for m, row in zip(measured, grid)])
     clear = sky.direct_at(zenith, index)
     dimmed = (clear[:, 0] - clear[:, -1]) / (DEPTHS[-1] - DEPTHS[0])  # of the logarithm a unit of depth
@@ -158,7 +160,7 @@ def compared(day, sky, times, index, filter_number, calibration):
     depth = depths_of(day, sky, times, index, filter_number, value)
     deeper = depths_of(day, sky, times, index, filter_number, value * (1 + error))
     ratio = lambda d, albedo: sky.ratio(day.zenith[times], np.clip(d, 0, DEPTHS[-1]), index, albedo)
-    albedo = ALBEDO[filter_number]
+    albedo = sky.albedo[filter_number]
     ours = ratio(depth, albedo)
     return ours, measured, np.hypot(ratio(depth, 4 / 3 * albedo) - ours, ratio(deeper, albedo) - ours) / ours, depth
 
@@ -209,6 +211,25 @@ def drift(day, sky, good, calibrations):
     return cells
 
 
+def medians(context, day, good, name, **changed):
+    """Median of ours over measured less 1, percent, of each filter of the morning, the band on the sun, in another sky."""
+    sky = Sky(context, day, "mfrsr_" + name, **changed)
+    cells = []
+    for index, k in enumerate(FILTERS):
+        inside = (day.hours < NOON_H) & (day.zenith >= JUDGED[0]) & (day.zenith <= JUDGED[1]) & good
+        times = np.flatnonzero(inside & np.isfinite(day.diffuse[k] / day.direct[k]) & (day.direct[k] > 0.05 * sky.irradiance[index]))
+        ours, measured, *_ = compared(day, sky, times, index, k, langley(day, sky, good, index, k))
+        cells.append("%.0f nm %+.1f" % (sky.nm[index], np.median(100 * (ours / measured - 1))))
+    return ", ".join(cells)
+
+
+def tried(context, day, good):
+    """A line for each thing that may stand between ours and the measured ratio, put in by itself with all calibrations made again."""
+    rows = [("as it is", "again", {}), ("half the albedo", "dark", {"brighter": 0.5}), ("twice the albedo", "bright", {"brighter": 2.0})]
+    rows += [("aerosol `%s`" % m, m, {"model": m}) for m in ("maritime", "free_troposphere", "urban", "desert")]
+    return ["Tried, %s: %s %%." % (what, medians(context, day, good, name, **changed)) for what, name, changed in rows]
+
+
 def run(context):
     day, result = Day(context.data / "mfrsr"), Result()
     sky, good = Sky(context, day), shaded(day)
@@ -233,4 +254,6 @@ def run(context):
                         "(40 %% more at 869 nm). `band on the sun`: the quarter of the times in each %d minutes in which it hides the sun best." % (BAND_PERIOD_S // 60))
     result.notes.append("From 17.4 to 18.4 h the band fails at times: diffuse light holds the sun. The data set's quality file names those times for one filter "
                         "(672 nm); they stand in all figures here.")
+    if len(day.hours) > 1000:  # the whole day, not the extract
+        result.notes += tried(context, day, good)
     return result

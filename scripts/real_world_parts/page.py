@@ -20,14 +20,14 @@ Ours beside what instruments measured, in one command; `--help` says what FOLDER
   of MODTRAN's paths in view.
 - Gases: builtin, but where a water continuum is named. With LOWTRAN 7's own laws and continuum of 1988 (`gases: lowtran`, builtin before) the same rows
   had: Pasadena 6.80, 7.03, 10.4 %% rms; HyTES from 8.2 to 11.3 um 1.10 K, at 0.95 times the profile's water (now its fit runs to
-  the largest column of the table, as it does with MT_CKD); paths of MODTRAN 0.0299 and 2.62 K rms, both seeds.
+  the largest column of the table); paths of MODTRAN 0.0299 and 2.62 K rms, both seeds.
 
 | instrument | place | bands | given | fitted | bias | rms | share | what explains the rest |
 |---|---|---|---|---|---|---|---|---|
 """
 
 
-TITLES = {"pasadena": "AVIRIS-NG over Pasadena", "mfrsr": "Shadowband radiometer", "hytes": "HyTES over water", "modtran_paths": "Paths of MODTRAN"}
+TITLES = {"pasadena": "AVIRIS-NG over Pasadena", "mfrsr": "Shadowband radiometer", "hytes": "HyTES over water", "surface": "Irradiance at the ground", "modtran_paths": "Paths of MODTRAN"}
 
 
 def row_text(row):

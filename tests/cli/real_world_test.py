@@ -3,6 +3,7 @@ their place. real_world_test.py BUILD SOURCE FOLDER [--store]
 """
 import csv
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -79,6 +80,36 @@ class RealWorld(unittest.TestCase):
             right = next(v for k, v in figures().items() if k[:2] == key[:2])
             self.assertGreater(row["rms"], 1.5 * right["rms"], key)
 
+    def test_a_surface_day_is_read_as_it_stands(self):
+        """ARM's half hours: the balance's end at their stamps; clear hours of the night have no sunlight."""
+        sys.path.insert(0, str(SOURCE / "scripts"))
+        from real_world_parts import surface_days
+        day, = surface_days.days(DATA / "surface", False)
+        self.assertEqual((len(day.hours), day.hours[0], day.hours[-1]), (21, 4.25, 14.25))
+        self.assertAlmostEqual(day.measured["longwave"][0], 370.0, 0)
+        self.assertEqual(int((day.measured["global"] > 0).sum()), 5)
+        self.assertTrue((day.zenith[day.measured["global"] > 0] < 90).all())
+        self.assertAlmostEqual(day.albedo, 0.18, 2)
+
+    @unittest.skipUnless(os.environ.get("SUITE_LONG"), "some 100 CPU seconds: SUITE_LONG=1")
+    def test_longwave_and_the_pasture_are_near_and_a_wrong_screen_is_seen(self):
+        """Longwave within 5 %, the bound of the pasture's own test; air 12 K colder has some 50 W/m2 less."""
+        longwave = lambda out: next(v for k, v in figures(out).items() if k[2].startswith("longwave"))
+        run("--only", "surface", out="out_surface")
+        self.assertLess(abs(longwave("out_surface")["bias"]), 18)
+        self.assertLess(next(v for k, v in figures("out_surface").items() if "ground by" in k[1])["rms"], 3.5)
+        copy = FOLDER / "cold"
+        shutil.copytree(DATA, copy)
+        path = next((copy / "surface").glob("sgp30ecor*.csv"))
+        lines = path.read_text().splitlines()
+        at = {name.split(" [")[0]: i for i, name in enumerate(lines[1].split(","))}
+        rows = [line.split(",") for line in lines[2:]]
+        for row in rows:
+            row[at["mean_t"]], row[at["temp_irga"]] = (str(float(row[at[k]]) - 12) for k in ("mean_t", "temp_irga"))
+        path.write_text("\n".join(lines[:2] + [",".join(row) for row in rows]) + "\n")
+        run("--only", "surface", data=copy, out="out_cold")
+        self.assertLess(longwave("out_cold")["bias"], longwave("out_surface")["bias"] - 25)
+
     def test_faults_have_their_place(self):
         self.assertRegex(run("--only", "pasadna", code=2), "no data set 'pasadna'; there are: pasadena, mfrsr")
         self.assertRegex(run("--paths", "0", code=2), "give 1 or more")
@@ -88,6 +119,9 @@ class RealWorld(unittest.TestCase):
         (FOLDER / "broken/mfrsr/extract.csv").write_text("hours_utc,zenith_deg\n14,60\n")
         self.assertRegex(run("--only", "mfrsr", data=FOLDER / "broken", out="out_broken", code=1), "mfrsr: what stands in .*direct_1")
         self.assertRegex(run("--continuum", FOLDER / "none.csv", code=1), "--continuum: no file")
+        for path in (FOLDER / "broken/surface").glob("*.csv"):
+            path.unlink()
+        self.assertRegex(run("--only", "surface", data=FOLDER / "broken", out="out_broken", code=1), "surface: no file of SURFRAD, BSRN, MIDC or ARM")
         shutil.rmtree(FOLDER / "broken/hytes")
         self.assertRegex(run("--only", "hytes", data=FOLDER / "broken", out="out_broken", code=1), "hytes is not there")
 

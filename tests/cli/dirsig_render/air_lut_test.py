@@ -4,6 +4,7 @@ their place, and the radiance of a rendered ground put together from the table. 
 import csv
 import json
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -156,6 +157,101 @@ class AirLut(unittest.TestCase):
         (FOLDER / "bare.yaml").write_text(SIM.replace(f"atmosphere: {AIR}\n", ""))
         self.assertIn("no real air", run("dirsig-render", "bare.yaml", "--air-lut", "grid.yaml", "-o", "bad", code=1))
         self.assertFalse((FOLDER / "bad/air_lut.nc").exists())
+
+
+EDGE = """scene: 1
+materials:
+  cold: {model: lambert, reflectance: 0}
+  hot: {model: lambert, reflectance: 0, temperature_k: 4000}
+objects: {dark: {plane: {width: 200000, depth: 400000}, material: cold}, bright: {plane: {width: 200000, depth: 400000}, material: hot}}
+world: [{place: dark, translate: [-100000, 0, 0]}, {place: bright, translate: [100000, 0, 0]}]
+"""
+FROM_EDGE_M = [300, 2000]  # over the dark half
+EDGE_SIM = f"""scene: edge.h5
+atmosphere: {{profile: midlatitude_summer, aerosol: {{model: rural, optical_depth_550: 0.4}}, scattering: traced}}
+sun: {{direction: {{zenith_deg: 40, azimuth_deg: 0}}}}
+sensors: [%s]
+"""
+EYE = "{{name: {name}, kind: frame_camera, columns: 1, rows: 1, pitch_um: 1, focal_length_mm: 100, position_m: [{x}, 0, {z}], look_at_m: [{x}, 0, 0], up: [0, 1, 0], " \
+      "paths: {paths}, bands: [{{name: g, center_um: 0.55, fwhm_um: 0.01}}, {{name: n, center_um: 0.87, fwhm_um: 0.01}}]}}"
+KERNEL = """air_lut: 1
+sensor: s0
+observer_altitude_km: 20
+solar_zenith: 40
+streams: 8
+check: false
+zarr: true
+kernel: {radii_km: [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 4, 5, 6, 8, 10, 13, 17, 22, 30, 45, 70], photons: %d}
+"""
+MANY = bool(os.environ.get("SUITE_LONG"))
+
+
+class AdjacencyKernel(unittest.TestCase):
+    """Light from around over a step edge, which glows so that the sun's light in the air is nothing beside it: the kernel of the table and traced air."""
+
+    @classmethod
+    def setUpClass(cls):
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        (FOLDER / "edge.yaml").write_text(EDGE)
+        eyes = [EYE.format(name=f"s{i}", x=-x, z=20000, paths=400000 if MANY else 30000) for i, x in enumerate(FROM_EDGE_M)]
+        (FOLDER / "edge_sim.yaml").write_text(EDGE_SIM % ", ".join(eyes))
+        (FOLDER / "kernel.yaml").write_text(KERNEL % (65536 if MANY else 8192))
+        run("scene-prep", "edge.yaml", "-o", "edge.h5", "-q")
+        cls.said = run("dirsig-render", "edge_sim.yaml", "--air-lut", "kernel.yaml", "-o", "kernel")
+        run("dirsig-render", "edge_sim.yaml", "-o", "edge", "-q", "-j", "2")
+        cls.table = xarray.open_dataset(FOLDER / "kernel/air_lut.nc")
+
+    def half_plane(self, band, distance_km):
+        """Share of the light from around that comes from beyond a straight edge, and its error: each ring even."""
+        radii = self.table["radius"].values
+        edges = numpy.concatenate([[0], radii, [3 * radii[-1]]])
+        within = numpy.concatenate([[0], self.table["kernel_within"].values[band], [1]])
+        beyond = []
+        for inner, outer in zip(edges[:-1], edges[1:]):
+            r = numpy.sqrt(numpy.linspace(inner**2, outer**2, 401)[1:])
+            beyond.append(numpy.mean(numpy.arccos(numpy.minimum(1, distance_km / r))) / math.pi)
+        return float((numpy.diff(within) * beyond).sum()), float(self.table["kernel_within_error"].values[band].max())
+
+    def test_a_step_edge_is_that_of_traced_air(self):
+        """Within 4 standard errors or 3 %, at two distances and in two bands; the kernel of half the distances is not."""
+        t = self.table
+        for i, metres in enumerate(FROM_EDGE_M):
+            values, _ = image(FOLDER / f"edge/s{i}.img")
+            errors, _ = image(FOLDER / f"edge/s{i}_error.img")
+            for b, um in enumerate((0.55, 0.87)):
+                glow = 1.191042972e8 / um**5 / math.expm1(14387.76877 / (um * 4000))
+                share, error = self.half_plane(b, 1e-3 * metres)
+                total = float(t["kernel_total"][b])
+                made, seen = glow * total * share, float(values[b].mean())
+                sigma = math.hypot(float(errors[b].mean()), glow * total * error)
+                print(f"{um} um, {metres} m from the edge: kernel {made:.5g}, traced {seen:.5g} +- {sigma:.2g}, off {100 * (made / seen - 1):+.1f} %")
+                self.assertLess(abs(made - seen), max(4 * sigma, 0.03 * seen), (metres, um))
+                wrong = glow * total * self.half_plane(b, 2e-3 * metres)[0]
+                if metres > 1000:
+                    self.assertGreater(abs(wrong - seen), max(4 * sigma, 0.03 * seen), (metres, um))
+
+    def test_it_is_whole(self):
+        t = self.table
+        self.assertEqual(t["kernel_within"].dims, ("wl", "radius"))
+        within = t["kernel_within"].values
+        self.assertTrue((numpy.diff(within, axis=1) >= 0).all() and within.max() <= 1)
+        for b in range(2):
+            total, error = float(t["kernel_total"][b]), float(t["kernel_total_error"][b])
+            self.assertLess(abs(total - float(t["transm_up_dif"][b])), 4 * error + 0.01 * total)
+            around = total / (total + float(t["transm_up_dir"][b]))
+            self.assertAlmostEqual(float(t["kernel_around"][b]), around, 4)
+        rings = numpy.diff(numpy.concatenate([[0], t["radius"].values]) ** 2) * math.pi
+        numpy.testing.assert_allclose((t["kernel_density"].values * rings).cumsum(1), within, rtol=1e-9)
+        self.assertEqual((t["radius"].attrs["units"], t["kernel_density"].attrs["units"]), ("km", "km-2"))
+        self.assertIn("adjacency kernels are of views straight down", self.said)
+        meta = json.loads((FOLDER / "kernel/air_lut.zarr/.zmetadata").read_text())["metadata"]
+        self.assertEqual(meta["kernel_within/.zattrs"]["_ARRAY_DIMENSIONS"], ["wl", "radius"])
+
+    def test_faults_have_their_place(self):
+        for new, said in (("kernel: {radii_km: [1, 0.5]}", r"bad.yaml:9:\d+.*0.5 follows 1"), ("kernel: {photons: 3}", r"bad.yaml:9:\d+.*3"),
+                          ("kernel: {radius_km: [1]}", r"bad.yaml:9:\d+.*did you mean 'radii_km'")):
+            (FOLDER / "bad.yaml").write_text("\n" + re.sub("(?m)^kernel:.*$", new, KERNEL % 64))
+            self.assertRegex(run("dirsig-render", "edge_sim.yaml", "--air-lut", "bad.yaml", "-o", "bad", code=1).replace("\n", " "), said)
 
 
 if __name__ == "__main__":
