@@ -45,6 +45,7 @@ struct KernelContext {
   const GlossGuide* gloss = nullptr;     // null: no continuation is drawn towards light that glossy surfaces throw
   bool stokes = false;                   // paths carry polarisation: only by techniques that tell their matrices
   const FlatMirrors* mirrors = nullptr;  // null: far points are left to sensors straight ahead alone
+  size_t end = kNoLight;                 // the light that is an end of a laser radar
 };
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.

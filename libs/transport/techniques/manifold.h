@@ -61,8 +61,8 @@ class Manifold {
   void want(const Wave& wave, const PathNode& node, const SampledLight& light, const LightSample& sample);
   void want_places(const Wave& wave);
   // Makes the contributions of the stage. Chains and guides begin where a way has been found.
-  template <class Chains, class Guide>
-  void answer(Wave& wave, Chains& chains, Guide& guide);
+  template <class Chains, class Guide, class Ends>
+  void answer(Wave& wave, Chains& chains, Guide& guide, Ends& ends);
   // Of light that smooth surfaces stop on its straight way: the share that is lost there, having not been looked for
   // through them. passes: what they pass.
   double lost(const Wave& wave, const SightQuestion& q, size_t ray, double passes);
@@ -87,8 +87,8 @@ class Manifold {
     double scale;
     const float* spectrum;
   };
-  template <class Chains, class Guide>
-  void answer(Wave& wave, const RefractedQuestion& q, size_t knot, Chains& chains, Guide& guide);
+  template <class Chains, class Guide, class Ends>
+  void answer(Wave& wave, const RefractedQuestion& q, size_t knot, Chains& chains, Guide& guide, Ends& ends);
   // Follows a way that has been begun; arrival: its optical length is added. False: nothing is left of its light.
   bool follow(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky,
               SuffixThroughput<Wave>& suffix, double& arrival);
@@ -110,8 +110,8 @@ class NoManifold {
   void begin() {}
   void want(const Wave&, const PathNode&, const SampledLight&, const LightSample&) {}
   void want_places(const Wave&) {}
-  template <class Chains, class Guide>
-  void answer(Wave&, Chains&, Guide&) {}
+  template <class Chains, class Guide, class Ends>
+  void answer(Wave&, Chains&, Guide&, Ends&) {}
   double lost(const Wave&, const SightQuestion&, size_t, double passes) { return passes; }
 };
 
@@ -164,8 +164,8 @@ double Manifold<Wave>::lost(const Wave& wave, const SightQuestion& q, size_t ray
 }
 
 template <class Wave>
-template <class Chains, class Guide>
-void Manifold<Wave>::answer(Wave& wave, Chains& chains, Guide& guide) {
+template <class Chains, class Guide, class Ends>
+void Manifold<Wave>::answer(Wave& wave, Chains& chains, Guide& guide, Ends& ends) {
   if (!sight_) return;
   chains.begin(wave), guide.begin(wave);
   for (const RefractedQuestion& q : questions_) {
@@ -177,7 +177,7 @@ void Manifold<Wave>::answer(Wave& wave, Chains& chains, Guide& guide) {
       // Chains that began before this scattering bring it.
       if (owner(path.claims.all(), behind, light, k) == Technique::volume_chains) continue;
       if constexpr (Wave::kWatched) wave.throughputs.ask(wave.nodes[q.node].path, Technique::manifold, light, k);
-      answer(wave, q, k, chains, guide);
+      answer(wave, q, k, chains, guide, ends);
     }
   }
   for (const PathNode& node : wave.nodes) chains.sample_sky(wave, *this, node);
@@ -229,14 +229,17 @@ RefractedSight::Node Manifold<Wave>::from_node(const Wave& wave, const PathNode&
 }
 
 template <class Wave>
-template <class Chains, class Guide>
-void Manifold<Wave>::answer(Wave& wave, const RefractedQuestion& q, size_t knot, Chains& chains, Guide& guide) {
+template <class Chains, class Guide, class Ends>
+void Manifold<Wave>::answer(Wave& wave, const RefractedQuestion& q, size_t knot, Chains& chains, Guide& guide,
+                            Ends& ends) {
   const PathNode& node = wave.nodes[q.node];
   const Path& path = wave.paths[node.path];
   constexpr uint64_t kPurpose = 0x62656e74;
   const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
   std::optional<RefractedWay> first;
-  for (const RefractedWay& way : sight_->find(from_node(wave, node), q.end, knot, seed))
+  const auto ways = sight_->find(from_node(wave, node), q.end, knot, seed);
+  if (!std::empty(ways)) ends.find(wave, q.node, q.light, std::begin(ways)->direction);
+  for (const RefractedWay& way : ways)
     if (shine_along(wave, way, q, knot) && !first) first = way;
   if (first && !chains.sample(wave, *this, q, first->direction, first->at[0].length, knot)) guide.find(wave, q, *first);
 }
