@@ -58,6 +58,7 @@ Json DetectJob::log() const {
     one.set("name", spec_.detectors[d]->name());
     one.set("returns", counts_[d].returns), one.set("signal_returns", counts_[d].signal);
     one.set("ideal_returns", counts_[d].ideal), one.set("pulses_without_return", counts_[d].silent);
+    one.set("pulses_beside_the_gate", run_->beside_gate(d));
     detectors.push(std::move(one));
   }
   log.set("detectors", std::move(detectors));
@@ -68,11 +69,17 @@ void DetectJob::finish() {
   Json all = log();
   for (const auto& output : outputs_) output->finish(all);
   write_file(place_.folder + "/detect.json", all.text());
-  for (size_t d = 0; d < counts_.size(); ++d)
+  for (size_t d = 0; d < counts_.size(); ++d) {
     note(strf("detector '%s': %llu returns of %llu pulses, %llu without any; %llu returns are not of the laser's light",
               spec_.detectors[d]->name().c_str(), static_cast<unsigned long long>(counts_[d].returns),
               static_cast<unsigned long long>(place_.pulses), static_cast<unsigned long long>(counts_[d].silent),
               static_cast<unsigned long long>(counts_[d].returns - counts_[d].signal)));
+    if (const uint64_t beside = run_->beside_gate(d))
+      note(strf(
+          "detector '%s': of %llu pulses most light came back beside the window of `gate.follow` and is lost; after a "
+          "pulse without a return the next one was searched for from start to stop",
+          spec_.detectors[d]->name().c_str(), static_cast<unsigned long long>(beside)));
+  }
 }
 
 }  // namespace suite

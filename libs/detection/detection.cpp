@@ -13,6 +13,18 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
+// Whether most of the laser's light that comes back where a following gate searches is beside its window.
+bool misses(const GateSpec& gate, const PulseLight& light) {
+  if (gate.kind != GateSpec::Kind::follow) return false;
+  double all = 0, heard = 0;
+  for (const PixelLight& pixel : light.pixels)
+    for (const PhotonArrival& a : pixel.arrivals) {
+      if (a.time >= gate.start && a.time < gate.stop) all += a.photons;
+      if (a.time >= light.window.start && a.time < light.window.stop) heard += a.photons;
+    }
+  return heard < 0.5 * all;
+}
+
 }  // namespace
 
 PulseShape read_pulse(const Params& params, const PulseFile& file) {
@@ -58,7 +70,8 @@ DetectionRun::DetectionRun(const ResponseHead& head, const DetectionSpec& spec,
       spec_(spec),
       deliver_(std::move(deliver)),
       folded_(head, spec.in_air),
-      gates_(spec.detectors.size(), Gate(spec.gate)) {}
+      gates_(spec.detectors.size(), Gate(spec.gate)),
+      beside_(spec.detectors.size(), 0) {}
 
 void DetectionRun::take(ResponseBlock&& block) {
   if (block.pulses.empty()) return;
@@ -105,6 +118,7 @@ void DetectionRun::detect_pulse(const ResponseBlock& block, size_t pulse, double
     std::vector<double> firsts;
     for (const PixelRecord& r : detected.records)
       if (!r.returns.empty()) firsts.push_back(r.returns.front().time);
+    beside_[d] += misses(spec_.gate, light);
     gates_[d].learn(firsts);
     deliver_(std::move(detected));
   }

@@ -44,6 +44,8 @@ class DetectionRun : public ResponseSink {
   // Pulses are detected once the emission behind them is known. Error, naming pulse and detector.
   void take(ResponseBlock&& block) override;
   void finish();
+  // Of a detector: pulses of which a following gate left out more than half of the light between `start` and `stop`.
+  uint64_t beside_gate(size_t detector) const { return beside_[detector]; }
 
  private:
   void detect(const ResponseBlock& block, double next_emission);
@@ -52,7 +54,8 @@ class DetectionRun : public ResponseSink {
   const DetectionSpec& spec_;
   std::function<void(DetectedPulse&&)> deliver_;
   FoldedRows folded_;
-  std::vector<Gate> gates_;  // of each detector
+  std::vector<Gate> gates_;       // of each detector
+  std::vector<uint64_t> beside_;  // likewise, pulses
   std::optional<ResponseBlock> waiting_;
 };
 

@@ -53,7 +53,9 @@ Gate::Window Gate::window(Window whole) const {
 }
 
 void Gate::learn(std::span<const double> first_returns) {
-  if (spec_.kind != GateSpec::Kind::follow || first_returns.empty()) return;
+  if (spec_.kind != GateSpec::Kind::follow) return;
+  // The ground has left the window, as at the end of a line that is scanned one way: search again.
+  if (first_returns.empty()) return seen_.clear();
   std::vector<double> all(first_returns.begin(), first_returns.end());
   std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
   seen_.push_back(all[all.size() / 2]);

@@ -25,7 +25,8 @@ class Gate {
   };
   // Of the next pulse. whole: what the response has.
   Window window(Window whole) const;
-  // s after the emission: the first returns of all pixels of the pulse that was read, none = nothing came back.
+  // s after the emission: the first returns of all pixels of the pulse that was read. None: nothing came back, and the
+  // next pulse is searched for from `start` to `stop` again.
   void learn(std::span<const double> first_returns);
 
  private:

@@ -7,6 +7,7 @@
 #include "light/air_vertices.h"
 #include "math/sampling.h"
 #include "optics/phase_function.h"
+#include "transport/node.h"
 #include "transport/serve.h"
 
 namespace suite {
@@ -193,7 +194,27 @@ double FirstScattering::air_up_to(const Ray& ray, const Leg& leg, double t) {
   return leg.airless ? leg.air : leg.air * air(ray.origin + ray.direction * leg.begin, ray.direction, t - leg.begin);
 }
 
-auto FirstScattering::go_on(const Ray& ray, const std::array<double, 4>& u) -> std::optional<Onward> {
+auto FirstScattering::direction(Dir along, Vec3 place, const BakedMedium& by, Vec2 u, Directions directions) const
+    -> DrawnDirection {
+  constexpr double kGuided = 0.5;  // of the paths
+  const Vec3 way = end_place_ - place;
+  const double distance = length(way);
+  float mean = 0;
+  by.phase->asymmetry({&mean, 1});
+  if (directions == Directions::by_scattering || !(double{mean} > kForwardScattering) || !(distance > 0))
+    return {scattered_direction(-along, by.phase->sample(u.x, 0), u.y), 1};
+  const Dir toward = way / distance;
+  const bool guided = u.x < kGuided;
+  const double left = guided ? u.x / kGuided : (u.x - kGuided) / (1 - kGuided);
+  const Dir in = scattered_direction(guided ? -toward : -along, by.phase->sample(left, 0), u.y);
+  float own = 0, other = 0;
+  by.phase->pdf(scattering_cosine(-along, in), {&own, 1});
+  by.phase->pdf(scattering_cosine(-toward, in), {&other, 1});
+  return {in, double{own} / ((1 - kGuided) * double{own} + kGuided * double{other})};
+}
+
+auto FirstScattering::go_on(const Ray& ray, const std::array<double, 4>& u, Directions directions)
+    -> std::optional<Onward> {
   constexpr double kDense = 1;  // depth at which free flights are scattered often enough
   const Stretch* const last = stretch_at(reach_);
   if (!last) return std::nullopt;
@@ -215,14 +236,15 @@ auto FirstScattering::go_on(const Ray& ray, const std::array<double, 4>& u) -> s
   const Leg& leg = legs_[s.leg];
   const double absorbed = s.depth - s.media_depth + (s.extinction - s.media) * (t - s.begin);
   Onward on;
-  on.ray = {ray.origin + ray.direction * t, scattered_direction(-ray.direction, by->phase->sample(u[1], 0), u[2]),
-            ray.time, ray.draw};
+  const Vec3 place = ray.origin + ray.direction * t;
+  const DrawnDirection drawn = direction(ray.direction, place, *by, {u[1], u[2]}, directions);
+  on.ray = {place, drawn.in, ray.time, ray.draw};
   if (laser_) {
     PlaneBlocks blocks;
     by->phase->polarised(scattering_cosine(-ray.direction, on.ray.direction), {&blocks, 1});
     on.scattered = ScatteringPlane(-ray.direction, on.ray.direction).matrix(blocks);
   }
-  on.weight = chance * std::exp(-absorbed) * air_up_to(ray, leg, t);
+  on.weight = drawn.weight * chance * std::exp(-absorbed) * air_up_to(ray, leg, t);
   on.arrival = leg.arrival + leg.delay * (t - leg.begin);
   return on;
 }
@@ -285,6 +307,7 @@ void FirstScattering::answer(std::vector<Scattered>& to) {
 void FirstScattering::trace(const Ray& ray, Vec3 end_place, const Gate& gate, const Strata& strata,
                             std::vector<Scattered>& to) {
   to.clear();
+  end_place_ = end_place;
   walk(ray);
   reach_ = (gate.stop + length(end_place - ray.origin)) / 2;
   surface_share_ =

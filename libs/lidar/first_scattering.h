@@ -54,14 +54,17 @@ class FirstScattering {
   void trace(const Ray& ray, Vec3 end_place, const Gate& gate, const Strata& strata, std::vector<Scattered>& to);
   // Where a path that is scattered for certain begins its second flight, for all further orders: the place is drawn by
   // scattering alone on the last ray, up to where light may still arrive within the gate, the direction by the phase
-  // function. u: in [0, 1), the place, the direction (two), by whom. Nothing where matter is so dense that paths are
-  // scattered anyway, or nothing scatters.
+  // function; where that has a mean cosine above kForwardScattering, half of the paths by the same about the direction
+  // of the last ray's end, both with the density of the mixture (techniques/end_guide.h says why). u: in [0, 1), the
+  // place, the direction (two), by whom. Nothing where matter is so dense that paths are scattered anyway, or nothing
+  // scatters.
   struct Onward {
     Ray ray;
     double weight, arrival;                   // arrival: m up to there
     Mueller scattered = Mueller::identity();  // over its m11, where polarisation is asked for
   };
-  std::optional<Onward> go_on(const Ray& ray, const std::array<double, 4>& u);
+  enum class Directions { by_scattering, towards_end };
+  std::optional<Onward> go_on(const Ray& ray, const std::array<double, 4>& u, Directions directions);
   // Of the last ray: by what the light of the first surface, scattered once there, is more for leaves on the way.
   double surface_share() const { return surface_share_; }
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
@@ -106,6 +109,11 @@ class FirstScattering {
   double at_fall(double depth) const;
   const Stretch* stretch_at(double t) const;
   double air_up_to(const Ray& ray, const Leg& leg, double t);
+  struct DrawnDirection {
+    Dir in;
+    double weight;  // phase function over the density
+  };
+  DrawnDirection direction(Dir along, Vec3 place, const BakedMedium& by, Vec2 u, Directions directions) const;
   void place(const Ray& ray, Vec3 end_place, const Gate& gate, double t, const Span& span, std::vector<Scattered>& to);
   void answer(std::vector<Scattered>& to);
 
@@ -119,6 +127,7 @@ class FirstScattering {
   Flights flights_;
   MediaSight sight_;
   FieldWalk walk_;
+  Vec3 end_place_;               // of the last ray
   std::vector<uint8_t> leaves_;  // per medium
   std::vector<double> delay_, index_;
   std::vector<Stretch> stretches_;

@@ -46,8 +46,13 @@ struct PulseRows::Job {
       uint32_t orders, bool without_first, const Asked& asked)
       : environment(std::move(lit)),
         options(method),
-        context{kit.surface, kit.optics, environment, options, asked.tags,
-                false,       true,       false,       nullptr, asked.polarised},
+        context{.surface = kit.surface,
+                .optics = kit.optics,
+                .environment = environment,
+                .options = options,
+                .keep_first = asked.tags,
+                .stokes = asked.polarised,
+                .end = asked.active ? size_t{end_} : kNoLight},
         end(end_),
         sink(kWave, end, receiver, orders, without_first),
         kernel(make(asked)),
@@ -198,6 +203,8 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
   const size_t pixels = range.last_pixel - range.first_pixel;
   const uint64_t paths = from_laser ? plan_.paths() : plan_.instrument.paths;
   const auto scrambles = static_cast<uint64_t>(plan_.scrambles);
+  const auto directions = plan_.options.method.side_flights ? FirstScattering::Directions::towards_end
+                                                            : FirstScattering::Directions::by_scattering;
   for (size_t k = 0; k < pulses_.size(); ++k) {
     const PulseAtWork& pulse = pulses_[k];
     for (size_t pixel = range.first_pixel; pixel < (from_laser ? range.first_pixel + 1 : range.last_pixel); ++pixel) {
@@ -225,7 +232,7 @@ void PulseRows::run(Job& job, const RowRange& range, bool from_laser, PulseRepor
           const SampleStream onward(key, static_cast<uint32_t>(scrambles + s));
           if (once_ && lane.active > 0 && plan_.instrument.orders > 1 && job.scatters &&
               plan_.options.forced_scattering)
-            on = once_->go_on(ray.ray, onward.draw(sample, dimensions::kSensor.first));
+            on = once_->go_on(ray.ray, onward.draw(sample, dimensions::kSensor.first), directions);
           lane.first_elsewhere = on.has_value();
           start(job, ray, stream, sample, lane, sensor, report);
           if (!on) continue;

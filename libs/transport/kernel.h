@@ -120,6 +120,10 @@ class PathKernel final : public PathTracing {
   // Of a light that path p has met: no technique claims it.
   SUITE_INLINE bool is_left_to_chance(uint32_t p, ClaimedLight light);
   void branch(size_t i);
+  // Whether a branch of the node goes towards the end of a laser radar; what guides to the sun under water stays alone.
+  bool goes_to_end(const PathNode& node) const {
+    return techniques_.ends.guides(wave_, node) && !techniques_.guide.guides(wave_, node);
+  }
   std::optional<bool> draw_at_interface(const PathNode& node, double lobe_u, std::span<float> memory, Continuation& on);
   SUITE_INLINE double ahead(size_t i, const Continuation& on) const;
   void leave_claims(const PathNode& node, const Continuation& on);

@@ -109,7 +109,9 @@ void PathKernel<Wave>::branch(size_t i) {
     const PathNode& node = wave_.nodes[i];
     const auto on_by = [&](size_t j, const Continuation& on) { return go_on(j, on); };
     if (techniques_.guide.guides(wave_, node)) techniques_.splitting.branch_guided(wave_, techniques_.guide, i, on_by);
-    if (wave_.is_first(node) && !node.event && techniques_.manifold.is_interface(wave_, node))
+    if (goes_to_end(node)) techniques_.splitting.branch_to_end(wave_, techniques_.ends, i, on_by);
+    if (techniques_.manifold.on() && wave_.is_first(node) && !node.event &&
+        techniques_.manifold.is_interface(wave_, node))
       techniques_.splitting.branch_mirrored(wave_, techniques_.manifold, i, on_by);
   }
 }
@@ -124,7 +126,8 @@ double PathKernel<Wave>::ahead(size_t i, const Continuation& on) const {
     const double index = wave_.space.index(wave_.nodes[i].path);
     if (techniques_.chains.passes_into_claimed_sky(wave_, techniques_.manifold, i, on))
       return kClaimed;  // what others bring is not worth while
-    if (techniques_.splitting.on() && on.dirac && index > 1) return kLeaves * index * index;
+    if (techniques_.manifold.on() && techniques_.splitting.on() && on.dirac && index > 1)
+      return kLeaves * index * index;
   }
   return 1;
 }

@@ -66,7 +66,8 @@ bool PathKernel<Wave>::go_on(size_t i, const Continuation& on) {
   wave_.throughputs.scatter(p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum},
                             event);
   const bool passed = leave(i, on);
-  if (passed && techniques_.splitting.on() && path.order() == 1) techniques_.splitting.part(wave_, p);
+  if (passed && techniques_.splitting.on() && techniques_.manifold.on() && path.order() == 1)
+    techniques_.splitting.part(wave_, p);
   return true;
 }
 
@@ -106,6 +107,7 @@ bool PathKernel<Wave>::draw(size_t i, Continuation& on) {
   auto& guide = techniques_.guide;
   using Guide = std::remove_reference_t<decltype(guide)>;
   if (guide.guides(wave_, node) && on.branch == Branch::none) guide.share(wave_, node, Guide::Way::own, on);
+  if (goes_to_end(node)) techniques_.ends.share(wave_, node, on);
   return true;
 }
 

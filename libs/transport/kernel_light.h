@@ -14,6 +14,7 @@ void PathKernel<Wave>::sample_lights() {
   wave_.sight_rays.first = first_stage_;
   points_.clear();
   techniques_.caustics.find(wave_);
+  techniques_.ends.find(wave_);
   for (const PathNode& node : wave_.nodes) {
     Path& path = wave_.paths[node.path];
     const uint32_t block = Space::kScatters && node.event
@@ -132,6 +133,7 @@ double PathKernel<Wave>::chance(const PathNode& node, Dir in, std::span<const do
     wave_.surfaces.densities(node.path, -path.direction, in, {density, wave_.knots()});
     if constexpr (Surfaces::kDense > 0) techniques_.caustics.share(wave_, node, in, {density, wave_.knots()});
   }
+  if (goes_to_end(node)) techniques_.ends.share(wave_, node, in, {density, wave_.knots()});
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
   return path.relative.mean(wave_.P(), density, reach);
 }

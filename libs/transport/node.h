@@ -8,6 +8,9 @@
 
 namespace suite {
 
+// Mean cosine: matter that scatters more evenly has no use for directions drawn about that of a light.
+inline constexpr double kForwardScattering = 0.5;
+
 // A node of the stage: a path at an event.
 struct PathNode {
   uint32_t path, slot;  // slot: of its hit

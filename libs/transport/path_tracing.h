@@ -47,6 +47,7 @@ struct KernelContext {
   bool stokes = false;                      // paths carry polarisation: only by techniques that tell their matrices
   const FlatMirrors* mirrors = nullptr;     // null: far points are left to sensors straight ahead alone
   StokesParts parts = StokesParts::linear;  // of polarised paths, that the light of the air is to have
+  size_t end = kNoLight;                    // the light that is an end of a laser radar
 };
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.

@@ -26,9 +26,6 @@
 
 namespace suite {
 
-// Mean cosine: matter that scatters more evenly has no use for directions drawn about that of a light.
-inline constexpr double kForwardScattering = 0.5;
-
 // The hero wavelengths of a spectral state.
 struct HeroSet {
   size_t count;

@@ -74,12 +74,12 @@ class Manifold {
   // Of ray i of the stage's shadow rays, which smooth surfaces stop: the share of its light that is not found through
   // them is to be known.
   void want_lost(const Wave& wave, const SightQuestion& q, size_t ray);
-  // All has been wanted. Chains and guides begin where a way is found.
+  // All has been wanted. Chains and guides begin where a way is found; ends learn it.
   template <class Chains, class Guide>
   void look(Wave& wave, Chains& chains, Guide& guide);
   // The next request, to be served before the next call; false when all contributions have been made.
-  template <class Chains, class Guide>
-  bool next(Wave& wave, Chains& chains, Guide& guide, TraceRequest& request);
+  template <class Chains, class Guide, class Ends>
+  bool next(Wave& wave, Chains& chains, Guide& guide, Ends& ends, TraceRequest& request);
   // The share of the light of such a ray that is lost. passes: what smooth surfaces on its straight way pass.
   double lost(const Wave& wave, const SightQuestion& q, size_t ray, double passes);
 
@@ -113,14 +113,14 @@ class Manifold {
     uint32_t chain = 0, last = 0;  // that is under way; the end of those of the sky
   };
   bool loses(const Wave& wave, const SightQuestion& q) const;
-  template <class Chains, class Guide>
-  bool advance(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s, Hit* hit);
+  template <class Chains, class Guide, class Ends>
+  bool advance(Wave& wave, Chains& chains, Guide& guide, Ends& ends, Asking& a, RefractedSearch& s, Hit* hit);
   template <class Chains>
   bool look_for_next(Wave& wave, Chains& chains, Asking& a, RefractedSearch& s);
   bool looks_for(Wave& wave, const RefractedQuestion& q, size_t knot);
   bool look_for(const Wave& wave, const RefractedQuestion& q, size_t knot, RefractedSearch& s);
-  template <class Chains, class Guide>
-  bool shine(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s);
+  template <class Chains, class Guide, class Ends>
+  bool shine(Wave& wave, Chains& chains, Guide& guide, Ends& ends, Asking& a, RefractedSearch& s);
   // Follows a way that has been begun; arrival: its optical length is added. False: nothing is left of its light.
   bool follow(Wave& wave, const Path& path, const RefractedWay& way, size_t knot, bool sky,
               SuffixThroughput<Wave>& suffix, double& arrival);
@@ -148,8 +148,8 @@ class NoManifold {
   void want_lost(const Wave&, const SightQuestion&, size_t) {}
   template <class Chains, class Guide>
   void look(Wave&, Chains&, Guide&) {}
-  template <class Chains, class Guide>
-  bool next(Wave&, Chains&, Guide&, TraceRequest&) {
+  template <class Chains, class Guide, class Ends>
+  bool next(Wave&, Chains&, Guide&, Ends&, TraceRequest&) {
     return false;
   }
   double lost(const Wave&, const SightQuestion&, size_t, double passes) { return passes; }
@@ -225,19 +225,20 @@ void Manifold<Wave>::look(Wave& wave, Chains& chains, Guide& guide) {
 }
 
 template <class Wave>
-template <class Chains, class Guide>
-bool Manifold<Wave>::next(Wave& wave, Chains& chains, Guide& guide, TraceRequest& request) {
+template <class Chains, class Guide, class Ends>
+bool Manifold<Wave>::next(Wave& wave, Chains& chains, Guide& guide, Ends& ends, TraceRequest& request) {
   if (!sight_) return false;
   const auto on = [&](uint32_t i, RefractedSearch& s, Hit* hit) {
-    return advance(wave, chains, guide, askings_[i], s, hit);
+    return advance(wave, chains, guide, ends, askings_[i], s, hit);
   };
   return searches_.next(request, on) || unfound_.next(*sight_, request);
 }
 
 // Takes a node on until it waits for a ray, or looks for nothing any more: false.
 template <class Wave>
-template <class Chains, class Guide>
-bool Manifold<Wave>::advance(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s, Hit* hit) {
+template <class Chains, class Guide, class Ends>
+bool Manifold<Wave>::advance(Wave& wave, Chains& chains, Guide& guide, Ends& ends, Asking& a, RefractedSearch& s,
+                             Hit* hit) {
   using For = typename Asking::For;
   bool waits = hit && sight_->step(s, *hit);
   while (!waits) {
@@ -246,7 +247,7 @@ bool Manifold<Wave>::advance(Wave& wave, Chains& chains, Guide& guide, Asking& a
         waits = look_for_next(wave, chains, a, s);
         break;
       case For::light:
-        waits = shine(wave, chains, guide, a, s);
+        waits = shine(wave, chains, guide, ends, a, s);
         break;
       case For::chain:
         chains.shine(wave, *this, a.chain, s.all());
@@ -307,12 +308,13 @@ bool Manifold<Wave>::look_for(const Wave& wave, const RefractedQuestion& q, size
 
 // What has been found shines; a chain or a guide may begin with it. Whether the search of a chain waits.
 template <class Wave>
-template <class Chains, class Guide>
-bool Manifold<Wave>::shine(Wave& wave, Chains& chains, Guide& guide, Asking& a, RefractedSearch& s) {
+template <class Chains, class Guide, class Ends>
+bool Manifold<Wave>::shine(Wave& wave, Chains& chains, Guide& guide, Ends& ends, Asking& a, RefractedSearch& s) {
   using For = typename Asking::For;
   const RefractedQuestion& q = questions_[a.question];
   const size_t knot = a.knot - 1;
   const RefractedWay* first = nullptr;
+  if (!s.all().empty()) ends.find(wave, q.node, q.light, s.all().front().direction);
   for (const RefractedWay& way : s.all())
     if (shine_along(wave, way, q, knot) && !first) first = &way;
   a.what = For::next;

@@ -5,6 +5,7 @@
 
 #include "transport/techniques/air_residual.h"
 #include "transport/techniques/caustic_guide.h"
+#include "transport/techniques/end_guide.h"
 #include "transport/techniques/equiangular.h"
 #include "transport/techniques/forward_guide.h"
 #include "transport/techniques/manifold.h"
@@ -24,6 +25,7 @@ struct Techniques {
   std::conditional_t<kModels, Manifold<Wave>, NoManifold<Wave>> manifold;
   std::conditional_t<kMedia, VolumeChains<Wave>, NoVolumeChains<Wave>> chains;
   std::conditional_t<kMedia, ForwardGuide<Wave>, NoForwardGuide<Wave>> guide;
+  std::conditional_t<kMedia, EndGuide<Wave>, NoEndGuide<Wave>> ends;
   std::conditional_t<kMedia, Splitting<Wave>, NoSplitting<Wave>> splitting;
   std::conditional_t<kMedia, SideVertex<Wave>, NoSideVertex<Wave>> side;
   std::conditional_t<kMedia, Equiangular<Wave>, NoEquiangular<Wave>> equiangular;
@@ -32,10 +34,12 @@ struct Techniques {
 
   void prepare(const KernelContext& context, const Wave& wave) {
     manifold.prepare(context);
-    splitting.prepare(context, wave, manifold.on());
-    chains.prepare(wave, splitting.on());
-    guide.prepare(splitting.on());
-    if (context.branches) side.prepare(wave, manifold.on());
+    if (context.branches) ends.prepare(context, wave);
+    const bool branches = manifold.on() && context.branches;
+    splitting.prepare(wave, branches || ends.on());
+    chains.prepare(wave, kMedia && branches);
+    guide.prepare(kMedia && branches);
+    if (context.branches) side.prepare(wave, manifold.on() || ends.on());
     if (context.branches) equiangular.prepare(wave);
     caustics.prepare(context, kMedia && manifold.on());
     residual.prepare(wave);

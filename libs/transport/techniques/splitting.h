@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "transport/techniques/end_guide.h"
 #include "transport/techniques/forward_guide.h"
 #include "transport/techniques/manifold.h"
 
@@ -27,8 +28,9 @@ class Splitting {
  public:
   using Path = typename Wave::Path;
   static constexpr bool kSplits = true;
-  void prepare(const KernelContext& context, const Wave& wave, bool manifold) {
-    if (manifold && context.branches) kept_.resize(wave.paths.size());
+  // branches: whether any technique makes some.
+  void prepare(const Wave& wave, bool branches) {
+    if (branches) kept_.resize(wave.paths.size());
   }
   bool on() const { return !kept_.empty(); }
   void start(uint32_t p) {
@@ -47,6 +49,9 @@ class Splitting {
   void branch_mirrored(Wave& wave, const Manifold<Wave>& manifold, size_t i, const GoOn& go_on);
   template <class GoOn>
   void branch_guided(Wave& wave, const ForwardGuide<Wave>& guide, size_t i, const GoOn& go_on);
+  // Towards the end of a laser radar.
+  template <class GoOn>
+  void branch_to_end(Wave& wave, const EndGuide<Wave>& ends, size_t i, const GoOn& go_on);
 
  private:
   struct Kept {
@@ -82,7 +87,7 @@ template <class Wave>
 class NoSplitting {
  public:
   static constexpr bool kSplits = false;
-  void prepare(const KernelContext&, const Wave&, bool) {}
+  void prepare(const Wave&, bool) {}
   bool on() const { return false; }
   void start(uint32_t) {}
   uint32_t surfaces(uint32_t, uint32_t last) const { return last; }
@@ -197,6 +202,14 @@ void Splitting<Wave>::branch_guided(Wave& wave, const ForwardGuide<Wave>& guide,
   if (!guide.draw(wave, node, {u[0], u[1]}, u[2], wave.dense(node.path), on)) return;
   guide.share(wave, node, ForwardGuide<Wave>::Way::guided, on);
   branch(wave, i, on, go_on);
+}
+
+template <class Wave>
+template <class GoOn>
+void Splitting<Wave>::branch_to_end(Wave& wave, const EndGuide<Wave>& ends, size_t i, const GoOn& go_on) {
+  const PathNode& node = wave.nodes[i];
+  Continuation on;
+  if (ends.draw(wave, node, wave.dense(node.path), on)) branch(wave, i, on, go_on);
 }
 
 }  // namespace suite

@@ -130,6 +130,27 @@ TEST(Detection, SaturationAndRecovery) {
   EXPECT_GT(full, size_t{20});
 }
 
+// A scan that goes one way jumps from high to low ground at the ends of its lines, and back: a gate that follows loses
+// the first pulse behind each jump, which it counts, and no others. (It stayed where it had been for good.)
+TEST(Detection, AFollowingGateFindsTheGroundAgain) {
+  const DetectionSpec spec = spec_of(
+      "{pulse: {kind: gaussian, fwhm_ns: 2}, gate: {start_m: 900, stop_m: 1200, follow: {ahead_m: 15, behind_m: 15, "
+      "pulses: 3}}, detectors: [{kind: linear, quantum_efficiency: 0.8, gain: 50, receiver_fwhm_ns: 1, returns: {by: "
+      "threshold, threshold_e_per_ns: 3000}}]}");
+  const ResponseHead head = response_head();
+  std::vector<uint64_t> silent;
+  DetectionRun stage(head, spec, [&](DetectedPulse&& p) {
+    if (p.records[0].returns.empty()) silent.push_back(p.number());
+  });
+  ResponseBlock block = response_block(head, 0, 40, 2000);
+  for (size_t p = 0; p < 40; ++p)
+    if (p / 10 % 2 == 1) block.pulses[p].start += 2 * 60 / kSpeedOfLight;
+  stage.take(std::move(block));
+  stage.finish();
+  EXPECT_EQ(silent, (std::vector<uint64_t>{10, 20, 30}));
+  EXPECT_EQ(stage.beside_gate(0), 3u);
+}
+
 // The walk of a framed detector with 10 primaries, which its ideal answer tells.
 TEST(Detection, IdealOfAFramedDetector) {
   const DetectionSpec spec = spec_of(

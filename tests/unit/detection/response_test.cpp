@@ -124,8 +124,12 @@ TEST(Gates, FollowWhatCameBack) {
   // The median of the last three.
   EXPECT_NEAR(gate.window({0, 1}).start, 990 * metre, 1e-15);
   EXPECT_NEAR(gate.window({0, 1}).stop, 1035 * metre, 1e-15);
+  // Nothing came back: it searches again, and forgets.
   gate.learn({});
-  EXPECT_NEAR(gate.window({0, 1}).start, 990 * metre, 1e-15);
+  EXPECT_NEAR(gate.window({0, 1}).start, 900 * metre, 1e-15);
+  EXPECT_NEAR(gate.window({0, 1}).stop, 1200 * metre, 1e-15);
+  gate.learn(std::vector<double>{1100 * metre});
+  EXPECT_NEAR(gate.window({0, 1}).start, 1070 * metre, 1e-15);
   EXPECT_THAT(message_of([] { read_gate(Params::parse_text("gate: {start_m: 9, stop_m: 3}", "g.yaml")); }),
               HasSubstr("g.yaml:1:7: error: the gate ends before it begins"));
 }

@@ -252,6 +252,34 @@ TEST(LidarMedia, ForcedScatteringIsTheSameWithLessNoise) {
   }
 }
 
+// Branches towards the other end bring the same light of further orders, from either end, with less noise: 4 sigma, and
+// as a negative control not what is 10 % more. Paths that are scattered for certain (thin fog) draw such directions,
+// too.
+TEST(LidarMedia, BranchesToTheEndAreTheSameWithLessNoise) {
+  for (const double depth : {0.5, 1.5}) {
+    auto scene = slab_scene(medium(Curve::constant(0.005), Curve::constant(depth / 5), hg(0.8)), 5);
+    scene->materials.push_back(material("soil", lambert(0.3)));
+    place(*scene, PrimitiveKind::plane, {0, 0}, 2, translation({0, 0, -0.5}));
+    check_scene(*scene, "fog over soil");
+    DownLidar lidar(20, 256);
+    lidar.laser.beam.full_angle_1_e2 = 0.04;
+    lidar.receiver.field_of_view = 0.12;
+    lidar.gate_of(14, 22, 2e-9);
+    lidar.paths = 64, lidar.orders = 6;
+    TraceOptions off;
+    off.method.side_flights = false;
+    for (const StartFrom from : {StartFrom::laser, StartFrom::receiver}) {
+      lidar.start_from = from;
+      const auto branched = receive(scene, lidar).total(kMultiple),
+                 chance = receive(scene, lidar, {}, off).total(kMultiple);
+      const double error = std::hypot(branched.error(), chance.error());
+      EXPECT_NEAR(branched.photons, chance.photons, 4 * error) << depth;
+      EXPECT_GT(std::fabs(1.1 * branched.photons - chance.photons), 0.5 * error) << depth;
+      EXPECT_LT(branched.error(), 0.8 * chance.error()) << depth;
+    }
+  }
+}
+
 // A sphere with a Lambert wall, seen from its middle by a cone in every direction: of an impulse that a point of the
 // wall sends, energy per 0.5 m of path that arrives at the wall (n-fold convolutions of the chords' density l / 2, to
 // 2e-5).
