@@ -92,6 +92,10 @@ class PathKernel final : public PathTracing {
   // kernel_light.h: next-event estimation.
   void sample_lights();
   void look_through();
+  // Its next request; false: all that was looked for is known.
+  bool next_through(TraceRequest& request) {
+    return techniques_.manifold.next(wave_, techniques_.chains, techniques_.guide, techniques_.ends, request);
+  }
   void resolve();  // hands contributions over
   SUITE_INLINE void shine(const Question& q, size_t ray, double passes);
   void lack(const Question& q, size_t ray, bool blocked);

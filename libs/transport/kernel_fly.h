@@ -38,8 +38,7 @@ bool PathKernel<Wave>::next(TraceRequest& request) {
         stage_ = Stage::look_through;
         break;
       case Stage::look_through:
-        if (techniques_.manifold.next(wave_, techniques_.chains, techniques_.guide, techniques_.ends, request))
-          return true;
+        if (next_through(request)) return true;
         resolve();
         stage_ = Stage::go_on;
         if (!techniques_.side.begin(wave_, request)) break;

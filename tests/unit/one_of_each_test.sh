@@ -33,8 +33,8 @@ places "continuations"       1 'throughputs\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
 # Beside a stage's own rays: which media a place lies in, what lies in one place with an interface, and ways through
 # interfaces, whose rays follow from each other; and rays of the truth `sky_view`, which no path takes.
-places "calls of the tracer" 8 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
-places "kinds of lights"     22 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
+places "calls of the tracer" 7 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
+places "kinds of lights"     23 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
   libs/[a-km-z]* libs/light/*.h libs/light/*.cpp apps formats
 # Negative control: a second place is noticed.
 twice=$(mktemp -d)
