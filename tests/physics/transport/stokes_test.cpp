@@ -96,7 +96,8 @@ TEST(Stokes, LampsArePolarisedAsTheySay) {
     const Mueller F = ScatteringPlane(-ray.direction, up).matrix(fresnel_reflection(std::cos(angle), 1.5));
     const StokesSeen mirrored = see_stokes(mirror, sources, {ray}, 256)[0];
     const Stokes thrown = F * direct;
-    expect_near(mirrored, thrown, 1e-6);
+    // Whether a path is thrown back is drawn: as many as expected but for two of 256, whatever the scrambles' spread.
+    expect_near(mirrored, thrown, 2.0 / 256 * direct[0]);
     for (size_t k = 1; k < 4; ++k)
       EXPECT_NEAR(mirrored.S[k] * thrown[0], thrown[k] * mirrored.S[0], 1e-6) << "the ratio has no noise";
     // Behind a polarizer along its own light, across it, and behind two of them.

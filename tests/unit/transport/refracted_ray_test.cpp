@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <vector>
 
 #include "optics/models.h"
 #include "scene/scene.h"
@@ -174,14 +175,24 @@ TEST(RefractedRay, Meshes) {
 
 // ---- ways to a far light
 
+// All ways from a place to a far light: each ray of the search is traced as it asks for it.
+std::vector<RefractedWay> find(World& w, RefractedSight& sight, Vec3 from, Dir light, uint64_t seed) {
+  RefractedSearch search;
+  WayStart node;
+  node.place = from;
+  TraceStatistics statistics;
+  Hit hit;
+  for (bool waits = sight.begin(search, node, {light, {}}, 0, seed); waits; waits = sight.step(search, hit))
+    w.tracer.nearest({&search.leg.ray, 1}, {&hit, 1}, false, statistics);
+  return {search.all().begin(), search.all().end()};
+}
+
 // Mean over seeds of spreading x trials: over all ways, of solid angle at the node a solid angle at the light.
 double mean_spreading(World& w, Vec3 from, Dir light, int seeds, int crossings) {
   RefractedSight sight(w.surface, w.optics);
-  RefractedSight::Node node;
-  node.place = from;
   double sum = 0;
   for (int seed = 0; seed < seeds; ++seed) {
-    for (const RefractedWay& way : sight.find(node, {light, {}}, 0, mix64(static_cast<uint64_t>(seed)))) {
+    for (const RefractedWay& way : find(w, sight, from, light, mix64(static_cast<uint64_t>(seed)))) {
       if (way.mirrors() != 0) continue;
       EXPECT_EQ(way.events, crossings);
       EXPECT_FALSE(way.doubtful);
@@ -194,11 +205,10 @@ double mean_spreading(World& w, Vec3 from, Dir light, int seeds, int crossings) 
 TEST(RefractedSight, FlatWaterHasOneWay) {
   World water(exact(PrimitiveKind::plane, {0, 0}, translation({0, 0, 1})));
   RefractedSight sight(water.surface, water.optics);
-  RefractedSight::Node node;
   for (const double zenith : {0.0, 0.5, 1.0, 1.3, 1.55}) {
     const Dir light = dir_from_angles(zenith, 0.3);
     const double n = sight.interfaces().index(0, 0), inside = std::asin(std::sin(zenith) / n);
-    const auto ways = sight.find(node, {light, {}}, 0, 7);
+    const auto ways = find(water, sight, {}, light, 7);
     ASSERT_EQ(ways.size(), 1u) << zenith;
     const double spreading = ways[0].spreading;
     EXPECT_LT(length(ways[0].direction - dir_from_angles(inside, 0.3)), 1e-8);
@@ -206,18 +216,17 @@ TEST(RefractedSight, FlatWaterHasOneWay) {
     // Every start finds it.
     EXPECT_NEAR(mean_spreading(water, {}, light, 200, 1) / spreading, 1, 0.12) << zenith;
   }
-  EXPECT_TRUE(sight.find(node, {dir_from_angles(100 * kDegree, 0), {}}, 0, 7).empty());
+  EXPECT_TRUE(find(water, sight, {}, dir_from_angles(100 * kDegree, 0), 7).empty());
 }
 
 // Each sequence of faces that reflect is one way, found with a probability of its own; each counts once in the mean.
 TEST(RefractedSight, ReflectionsInAPane) {
   World pane(exact(PrimitiveKind::box, {0, 0, 1, 0, 0, 1.1}));
   RefractedSight sight(pane.surface, pane.optics);
-  RefractedSight::Node node;
   constexpr int kSeeds = 20000;
   double counted[3] = {};  // without, with two, with four reflections
   for (uint64_t seed = 0; seed < kSeeds; ++seed)
-    for (const RefractedWay& way : sight.find(node, {dir_from_angles(75 * kDegree, 1), {}}, 0, mix64(seed))) {
+    for (const RefractedWay& way : find(pane, sight, {}, dir_from_angles(75 * kDegree, 1), mix64(seed))) {
       const int mirrors = std::popcount(way.mirrors());
       EXPECT_EQ(way.events, 2 + mirrors);
       EXPECT_NEAR(way.spreading, 1, 1e-6);
