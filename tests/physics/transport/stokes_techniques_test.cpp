@@ -217,7 +217,8 @@ class Flipped final : public Sink<StokesThroughputs> {
       PolarisedEvent wrong;
       if (c.asked && c.polarised && c.smooth >= smooth_) {
         matrices_.assign(c.polarised->matrices.begin(), c.polarised->matrices.end());
-        for (Mueller& m : matrices_) m(1, 0) = -m(1, 0);
+        for (Mueller& m : matrices_)
+          for (int k = 0; k < 4; ++k) m(1, k) = -m(1, k);  // m(1, 0) alone hardly matters to a polarised lamp
         wrong = {matrices_, c.polarised->unknown};
         c.polarised = &wrong;
       }
