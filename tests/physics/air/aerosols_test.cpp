@@ -6,6 +6,7 @@
 #include "air/mie.h"
 #include "air/particles.h"
 #include "air/phase_grid.h"
+#include "air/size_distribution.h"
 #include "math/vec.h"
 
 namespace suite {
