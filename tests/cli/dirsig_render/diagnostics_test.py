@@ -112,6 +112,9 @@ class Diagnostics(unittest.TestCase):
         self.expect("DR111", scene="cold", text=SUN + camera("[{name: red, center_um: 0.6, fwhm_um: 0.05, shape: rectangular}, "
                                           "{name: black, center_um: 1.6, fwhm_um: 0.05, shape: rectangular}]"))
         self.expect("DR112", camera(WARM))
+        lamp = "lamps:\n  - {kind: point, name: lamp, positions_m: [[0, 0, 9]], intensity: 10, stokes: [1, 0.5, 0, 0]}\n"
+        self.expect("DR210", lamp + camera(), severity="info")
+        self.assertNotIn("[DR210]", self.said(lamp + camera(more=", stokes: linear")))
         self.expect("DR501", "sun: {direction: {zenith_deg: 40, azimuth_deg: 90}}\natmosphere: {profile: midlatitude_summer}\n" +
                     camera("[{name: water, center_um: 0.94, fwhm_um: 0.01, shape: rectangular}]", ", spectral_step_um: 0.02"))
         self.expect("DR502", SUN + camera("[{name: edge, center_um: 0.72, fwhm_um: 0.1, shape: rectangular}]",
