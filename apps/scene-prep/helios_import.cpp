@@ -33,7 +33,7 @@ HeliosHeights heights_of(const std::string& path) {
 }
 
 HeliosText text_of(const std::string& path, TrackedInputs& inputs, Report& report) {
-  Report again(scene_issues());  // what is found in meshes is told where they are read for the scene
+  Report again(scene_issues());  // what is found in meshes is told where they are read_helios for the scene
   const HeliosFiles files{[&](const std::string& name) { return grid_of(inputs.path_of(name)); },
                           [&](const std::string& name) { return read_text(inputs.add(name).path, size_t{1} << 30); },
                           [&](const std::string& name) { return heights_of(inputs.path_of(name)); },
@@ -41,7 +41,7 @@ HeliosText text_of(const std::string& path, TrackedInputs& inputs, Report& repor
   return parse_helios(read_text(path), path, files, report);
 }
 
-Draft read(const std::string& path, const ImportOptions& options, Report& report) {
+Draft read_helios(const std::string& path, const ImportOptions& options, Report& report) {
   TrackedInputs inputs(path, options.search);
   const HeliosText made = text_of(path, inputs, report);
   const Params root = Params::parse_made(made.yaml, path, made.origins, options.settings);
@@ -49,7 +49,7 @@ Draft read(const std::string& path, const ImportOptions& options, Report& report
 }
 
 // File names stay as they are: the text is to be read with the same --path.
-bool convert(const std::string& path, const ImportOptions& options, const std::string& folder) {
+bool convert_helios(const std::string& path, const ImportOptions& options, const std::string& folder) {
   namespace fs = std::filesystem;
   Report report(scene_issues());
   TrackedInputs inputs(path, options.search);
@@ -67,7 +67,8 @@ bool convert(const std::string& path, const ImportOptions& options, const std::s
 }  // namespace
 
 ImporterRow helios_importer() {
-  return {{"helios", "a scene of HELIOS++, .xml (formats/helios/FORMAT.md)", "", read}, is_helios, convert};
+  return {
+      {"helios", "a scene of HELIOS++, .xml (formats/helios/FORMAT.md)", "", read_helios}, is_helios, convert_helios};
 }
 
 }  // namespace suite

@@ -140,7 +140,7 @@ Made text_of(const std::string& path, const std::string& file, const std::string
   return made;
 }
 
-Draft read(const std::string& path, const ImportOptions& options, Report& report) {
+Draft read_model(const std::string& path, const ImportOptions& options, Report& report) {
   const std::string file = std::filesystem::path(path).filename().string();
   std::string head(std::min<size_t>(file_size(path), 4096), '\0');
   RandomAccessFile(path).read_at(0, std::as_writable_bytes(std::span(head)));
@@ -168,7 +168,7 @@ Draft read(const std::string& path, const ImportOptions& options, Report& report
   return read_scene_tree(root, inputs, report);
 }
 
-bool convert(const std::string& path, const ImportOptions& options, const std::string& folder) {
+bool convert_model(const std::string& path, const ImportOptions& options, const std::string& folder) {
   namespace fs = std::filesystem;
   std::string head(std::min<size_t>(file_size(path), 4096), '\0');
   RandomAccessFile(path).read_at(0, std::as_writable_bytes(std::span(head)));
@@ -189,9 +189,9 @@ ImporterRow model_importer() {
   return {
       {"model",
        "a model: glTF or GLB, FBX, Collada, 3DS, PLY, STL, CityJSON, CityGML (formats/gltf, assimp, ply, stl and city)",
-       "", read},
+       "", read_model},
       sniff,
-      convert};
+      convert_model};
 }
 
 }  // namespace suite

@@ -59,9 +59,10 @@ std::string reference_of(const XmlElement& e) {
   return to && to->size() > 1 && to->front() == '#' ? to->substr(1) : std::string();
 }
 
-class Reader {
+class CitygmlReader {
  public:
-  Reader(const std::string& file, const std::optional<std::string>& lod, Report& report) : lod_(lod), report_(report) {
+  CitygmlReader(const std::string& file, const std::optional<std::string>& lod, Report& report)
+      : lod_(lod), report_(report) {
     model_.file = file;
   }
   void look(const XmlElement& e);
@@ -106,7 +107,7 @@ class Reader {
 };
 
 // The reference system, and members of the model.
-void Reader::look(const XmlElement& e) {
+void CitygmlReader::look(const XmlElement& e) {
   if (local(e.name()) != "CityModel") throw e.fault("'" + printable(e.name()) + "' is no CityModel");
   references(e, "");
   const auto each_object = [&](const auto& visit) {
@@ -120,7 +121,7 @@ void Reader::look(const XmlElement& e) {
   each_object([&](const XmlElement& o) { member(o); });
 }
 
-void Reader::find_shared(const XmlElement& e, size_t object, const std::string& kind) {
+void CitygmlReader::find_shared(const XmlElement& e, size_t object, const std::string& kind) {
   const std::string_view name = local(e.name());
   const std::string within = is_kind(name) ? std::string(name) : kind;
   if (const auto id = attribute_of(e, "id"); id && wanted_.count(*id)) shared_.emplace(*id, Shared{e, object, within});
@@ -128,7 +129,7 @@ void Reader::find_shared(const XmlElement& e, size_t object, const std::string& 
 }
 
 // A surface of another object is a surface of this one, too; what the object has itself it has already.
-void Reader::refer(const XmlElement& e, const std::string& id, const Around& around, std::vector<Found>& to) {
+void CitygmlReader::refer(const XmlElement& e, const std::string& id, const Around& around, std::vector<Found>& to) {
   const auto found = shared_.find(id);
   if (found == shared_.end()) {
     ++lost_;
@@ -145,7 +146,7 @@ void Reader::refer(const XmlElement& e, const std::string& id, const Around& aro
   --nested_;
 }
 
-void Reader::references(const XmlElement& e, const std::string& kind) {
+void CitygmlReader::references(const XmlElement& e, const std::string& kind) {
   const std::string_view name = local(e.name());
   const std::string within = is_kind(name) ? std::string(name) : kind;
   if (const auto system = attribute_of(e, "srsName"); system && !system->empty()) {
@@ -165,7 +166,7 @@ void Reader::references(const XmlElement& e, const std::string& kind) {
   e.each_child([&](const XmlElement& child) { references(child, within); });
 }
 
-std::vector<double> Reader::numbers(const XmlElement& e) const {
+std::vector<double> CitygmlReader::numbers(const XmlElement& e) const {
   std::vector<double> all;
   const std::string text = e.text();
   for (size_t at = text.find_first_not_of(" \t\r\n"); at != text.npos;) {
@@ -178,7 +179,7 @@ std::vector<double> Reader::numbers(const XmlElement& e) const {
   return all;
 }
 
-void Reader::ring(const XmlElement& e, std::vector<std::vector<Vec3>>& to) const {
+void CitygmlReader::ring(const XmlElement& e, std::vector<std::vector<Vec3>>& to) const {
   std::vector<double> all;
   e.each_child([&](const XmlElement& child) {
     const std::string_view name = local(child.name());
@@ -198,7 +199,7 @@ void Reader::ring(const XmlElement& e, std::vector<std::vector<Vec3>>& to) const
   to.push_back(std::move(corners));
 }
 
-void Reader::polygon(const XmlElement& e, const Around& around, std::vector<Found>& to) {
+void CitygmlReader::polygon(const XmlElement& e, const Around& around, std::vector<Found>& to) {
   CityModel::Surface made{around.kind, {}, e.where().line};
   if (const auto id = attribute_of(e, "id"); id && !is_kind(made.kind))
     if (const auto kind = kinds_.find(*id); kind != kinds_.end()) made.kind = kind->second;
@@ -217,7 +218,7 @@ void Reader::polygon(const XmlElement& e, const Around& around, std::vector<Foun
 
 // A prototype that is placed: turned, scaled and moved by a matrix, then put at a point. Its geometry stands here or
 // where it is placed first; files (libraryObject) are left out.
-void Reader::implicit(const XmlElement& e, const Around& around, std::vector<Found>& to) {
+void CitygmlReader::implicit(const XmlElement& e, const Around& around, std::vector<Found>& to) {
   std::vector<double> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, at{0, 0, 0};
   std::vector<Found> made;
   bool here = false;
@@ -251,7 +252,7 @@ void Reader::implicit(const XmlElement& e, const Around& around, std::vector<Fou
   }
 }
 
-void Reader::walk(const XmlElement& e, Around around, std::vector<Found>& to) {
+void CitygmlReader::walk(const XmlElement& e, Around around, std::vector<Found>& to) {
   const std::string_view name = local(e.name());
   if (is_kind(name)) around.kind = std::string(name);
   if (const auto level = level_in(name)) around.level = *level;
@@ -268,7 +269,7 @@ void Reader::walk(const XmlElement& e, Around around, std::vector<Found>& to) {
   e.each_child([&](const XmlElement& child) { walk(child, around, to); });
 }
 
-void Reader::member(const XmlElement& e) {
+void CitygmlReader::member(const XmlElement& e) {
   CityModel::Object made;
   made.type = std::string(local(e.name()));
   made.line = e.where().line;
@@ -285,7 +286,7 @@ void Reader::member(const XmlElement& e) {
   model_.objects.push_back(std::move(made));
 }
 
-CityModel Reader::finish() {
+CityModel CitygmlReader::finish() {
   const auto add_finding = [&](const char* code, size_t count, const char* what) {
     if (count) report_.add(code, model_.file, {Where{model_.file, 0, 0, {}, -1}, strf("%zu %s", count, what)}, count);
   };
@@ -301,7 +302,7 @@ CityModel Reader::finish() {
 
 CityModel parse_gml(std::string_view text, const std::string& file, const std::optional<std::string>& lod,
                     Report& report) {
-  Reader reader(file, lod, report);
+  CitygmlReader reader(file, lod, report);
   reader.look(XmlElement::parse(text, file));
   return reader.finish();
 }

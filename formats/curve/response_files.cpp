@@ -16,7 +16,7 @@ namespace {
 
 // What the netCDF library writes beside a dimension that has no values of its own.
 constexpr const char* kNoVariable = "This is a netCDF dimension but not a netCDF variable";
-constexpr size_t kMostVariables = 4096, kMostBands = 4096;
+constexpr size_t kMostVariables = 4096, kMostBandsOfFile = 4096;
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -33,7 +33,7 @@ struct Unit {
 };
 
 // As UDUNITS writes it; nothing when it is no length.
-std::optional<Unit> unit_of(const std::string& text) {
+std::optional<Unit> unit_of_length(const std::string& text) {
   const std::string u = lower(text);
   for (const char* name : {"nm", "nanometer", "nanometers", "nanometre", "nanometres"})
     if (u == name) return Unit{1e-3};
@@ -131,7 +131,7 @@ std::vector<std::string> ResponseFile::response_variables(const std::string& wav
 
 Unit ResponseFile::unit(const std::string& variable) const {
   const std::string text = file_.text(variable, "units");
-  const std::optional<Unit> unit = unit_of(text);
+  const std::optional<Unit> unit = unit_of_length(text);
   if (!unit)
     fail("variable '" + printable(variable) + "' has " +
              (text.empty() ? "no units" : "the units '" + printable(text) + "'"),
@@ -208,7 +208,7 @@ std::vector<NamedCurve> ResponseFile::read() const {
   // A band a row, or a band a column where only the rows are as many as the wavelengths.
   const bool by_row = t.columns == length, by_column = waves.rows == 1 && t.rows == length;
   const size_t count = by_row ? t.rows : t.columns;
-  if ((!by_row && !by_column) || (waves.rows > 1 && waves.rows != t.rows) || count > kMostBands)
+  if ((!by_row && !by_column) || (waves.rows > 1 && waves.rows != t.rows) || count > kMostBandsOfFile)
     fail(strf("responses of %zu x %zu for wavelengths of %zu x %zu", t.rows, t.columns, waves.rows, waves.columns),
          "responses with the dimensions (band, wavelength), at most 4096 bands");
   if (by_row && by_column)

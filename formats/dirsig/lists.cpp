@@ -12,7 +12,7 @@ namespace suite::dirsig {
 namespace {
 
 // Lists that name each other in a circle end here.
-constexpr int kDeepest = 40;
+constexpr int kListsDeepest = 40;
 
 bool disabled(const Item& item) {
   const Item* enabled = item.find("@enabled");
@@ -64,8 +64,8 @@ std::array<double, 3> triple_of(const Item& item) {
 }
 
 void SceneWriter::read_list_file(const std::string& path, const Scope& scope, Tree& to) {
-  if (++depth_ > kDeepest)
-    throw Error(Where{path, 0, 0, {}, -1}, strf("lists name each other more than %d deep", kDeepest),
+  if (++depth_ > kListsDeepest)
+    throw Error(Where{path, 0, 0, {}, -1}, strf("lists name each other more than %d deep", kListsDeepest),
                 "a list must not lead back to itself");
   Scope mine = scope;
   mine.folders.insert(mine.folders.begin(), folder_of(path));

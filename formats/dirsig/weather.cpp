@@ -10,7 +10,7 @@ namespace suite::dirsig {
 
 namespace {
 
-constexpr double kDay = 86400;
+constexpr double kWeatherDay = 86400;
 constexpr double kMostOffMean = 2.5;  // h that a zone's time may differ from the mean sun's
 
 }  // namespace
@@ -59,8 +59,8 @@ void SimulationWriter::use_weather(const Item& named) {
   // The clock on the wall, as if it were UTC.
   Utc local = utc_from_instant(epoch + asked.utc_offset_h * 3600);
   local.hour = local.minute = 0, local.second = 0;
-  const Instant begin = instant_from_utc(local) + -asked.utc_offset_h * 3600 + -kDay;
-  asked.date = to_iso8601(utc_from_instant(instant_from_utc(local) + -kDay), 0).substr(0, 10);
+  const Instant begin = instant_from_utc(local) + -asked.utc_offset_h * 3600 + -kWeatherDay;
+  asked.date = to_iso8601(utc_from_instant(instant_from_utc(local) + -kWeatherDay), 0).substr(0, 10);
   double seconds = 0;
   try {
     seconds = help_.weather(asked);

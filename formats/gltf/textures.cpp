@@ -9,7 +9,7 @@ namespace suite::gltf {
 
 namespace {
 
-constexpr size_t kMostBytes = size_t{1} << 30;  // of one image
+constexpr size_t kMostTextureBytes = size_t{1} << 30;  // of one image
 
 // %20 and the like (RFC 3986), which names of files in a glTF may have.
 std::string plain_name(const std::string& uri) {
@@ -32,7 +32,7 @@ std::vector<std::byte> bytes_of(const tinygltf::Model& model, const std::string&
                                 const Resolve& resolve) {
   const tinygltf::Image& image = item_of(model.images, index, file, at, "image");
   const std::string pointer = strf("images[%d]", index);
-  if (image.bufferView < 0 && !image.uri.empty()) return read_bytes(resolve(plain_name(image.uri)), kMostBytes);
+  if (image.bufferView < 0 && !image.uri.empty()) return read_bytes(resolve(plain_name(image.uri)), kMostTextureBytes);
   if (image.bufferView < 0) {
     const std::byte* first = reinterpret_cast<const std::byte*>(image.image.data());
     return {first, first + image.image.size()};

@@ -11,7 +11,7 @@ namespace suite::h5 {
 
 namespace {
 
-constexpr hsize_t kMostBytes = hsize_t{1} << 30, kBestRatio = 1040;  // deflate packs no better
+constexpr hsize_t kMostBytes = hsize_t{1} << 30, kForeignRatio = 1040;  // deflate packs no better
 
 bool known_packing(hid_t create) {
   for (int k = 0; k < H5Pget_nfilters(create); ++k) {
@@ -68,7 +68,7 @@ Foreign::Table Foreign::table(const std::string& name) const {
   if (const std::string wrong = elsewhere(create); !wrong.empty()) fail("dataset '" + name + "' " + wrong);
   if ((layout != H5D_CONTIGUOUS && layout != H5D_COMPACT && !packed) || (packed && !known_packing(create)))
     fail("dataset '" + name + "' has a layout that is not read");
-  if (there > file_size(path_) || (packed ? bytes / kBestRatio > there : bytes > there))
+  if (there > file_size(path_) || (packed ? bytes / kForeignRatio > there : bytes > there))
     fail("dataset '" + name + "' is not whole");
   if (const std::string wrong = overclaim(t.rows * t.columns * sizeof(double), file_size(path_)); !wrong.empty())
     fail("dataset '" + name + "' " + wrong);

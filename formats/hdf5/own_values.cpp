@@ -8,7 +8,7 @@ namespace suite::h5 {
 
 namespace {
 
-constexpr unsigned long long kSmall = 256ull << 20, kMostTimes = 256;
+constexpr unsigned long long kSmallValues = 256ull << 20, kMostTimes = 256;
 
 herr_t refuse(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) { return -1; }
 
@@ -46,7 +46,7 @@ std::string elsewhere(Id create) {
 }
 
 std::string overclaim(unsigned long long bytes, unsigned long long file_bytes) {
-  if (bytes <= kSmall || bytes / kMostTimes <= file_bytes) return {};
+  if (bytes <= kSmallValues || bytes / kMostTimes <= file_bytes) return {};
   return "unpacks to " + human_bytes(static_cast<double>(bytes)) + ", more than " + std::to_string(kMostTimes) +
          " times the " + human_bytes(static_cast<double>(file_bytes)) + " of the whole file";
 }

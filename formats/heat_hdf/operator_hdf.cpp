@@ -14,7 +14,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat operator", *kVersion = "6";
+constexpr const char *kOperatorFormat = "suite heat operator", *kOperatorVersion = "6";
 constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight", *kStraight = "straight_sunlight";
 constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
 constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
@@ -101,8 +101,8 @@ const char* name_of(const Straight<Sun>&) {
 }
 
 void put_identity(h5::Writer& w, const OperatorIdentity& identity) {
-  w.attribute("format", kFormat);
-  w.attribute("version", kVersion);
+  w.attribute("format", kOperatorFormat);
+  w.attribute("version", kOperatorVersion);
   for (const auto& [name, text] : identity.scene) w.attribute("of_" + name, text);
 }
 
@@ -174,16 +174,16 @@ SunPath take_path(h5::Reader& r) {
   return path;
 }
 
-void check_kind(h5::Reader& r) {
-  if (r.text("format") != kFormat) r.fail("holds no paths of a balance of heat");
-  h5::check_version(r, kVersion);
+void check_operator_kind(h5::Reader& r) {
+  if (r.text("format") != kOperatorFormat) r.fail("holds no paths of a balance of heat");
+  h5::check_version(r, kOperatorVersion);
 }
 
 // What is in a file of this kind and fits.
 class Stored {
  public:
   Stored(const std::string& path, const OperatorIdentity& identity) : reader_(path, kHint), identity_(identity) {
-    check_kind(reader_);
+    check_operator_kind(reader_);
     for (const auto& [name, text] : identity.scene)
       if (const std::string there = reader_.text("of_" + name); there != text)
         reader_.fail("was found with another " + name + " (" + there.substr(0, 60) + ", here " + text.substr(0, 60) +
@@ -368,7 +368,7 @@ void StoredOperator::read(Sunlight& into) const {
 
 HeatCut operator_cut(const std::string& path) {
   h5::Reader r(path, kHint);
-  check_kind(r);
+  check_operator_kind(r);
   return take_cut(r);
 }
 

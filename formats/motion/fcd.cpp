@@ -45,7 +45,7 @@ class FcdReader {
 
   double number(const XmlElement& node, const char* key) const {
     const auto a = node.attribute(key);
-    const auto value = a ? number_of(*a) : std::nullopt;
+    const auto value = a ? finite_number(*a) : std::nullopt;
     if (!value)
       throw node.fault(a ? std::string(key) + "=\"" + *a + "\" is no number" : std::string("no ") + key,
                        std::string(node.name()) + " needs a number " + key);
@@ -61,7 +61,7 @@ class FcdReader {
     size_t n = 0;
     for (size_t at = before; n < 4 && at <= text.size(); ++n) {
       const size_t stop = std::min(text.find(':', at), text.size());
-      const auto part = number_of(text.substr(at, stop - at));
+      const auto part = finite_number(text.substr(at, stop - at));
       if (!part || !(*part >= 0) || (stop < text.size() && *part != std::floor(*part))) break;
       parts[n] = *part;
       at = stop + 1;

@@ -42,7 +42,7 @@ struct TableRow {
   double time(const MotionContext& context) const;
 };
 // A finite number, written with or without a sign; nothing when the text is none.
-std::optional<double> number_of(std::string_view text);
+std::optional<double> finite_number(std::string_view text);
 void for_each_row(std::string_view text, const std::string& file_name, std::span<const char* const> known_names,
                   const std::function<void(const TableRow&)>& visit);
 

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/files.h"
+#include "base/number_text.h"
 #include "formats/motion/fields.h"
 
 namespace suite {
@@ -64,17 +64,13 @@ std::optional<size_t> TableRow::find(const char* name) const {
   return std::nullopt;
 }
 
-std::optional<double> number_of(std::string_view text) {
-  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || status != std::errc() || stop != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
+std::optional<double> finite_number(std::string_view text) {
+  const std::optional<double> value = number_of(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 double TableRow::number(size_t column) const {
-  if (const auto value = number_of(cells[column])) return *value;
+  if (const auto value = finite_number(cells[column])) return *value;
   Where at = where;
   at.column = columns[column];
   throw Error(at, (*names)[column] + " is no number: '" + std::string(cells[column]) + "'", "write a finite number");

@@ -27,7 +27,7 @@ bool TimedCell::truth() const {
 }
 
 double TimedCell::number_in(double low, double high, const char* unit) const {
-  const auto value = number_of(text);
+  const auto value = finite_number(text);
   if (!value || !(*value >= low && *value <= high))
     throw Error(where, "'" + text + "' is no number from " + strf("%g to %g %s", low, high, unit));
   return *value;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr size_t kMostText = size_t{1} << 26, kMostImage = size_t{1} << 30;  // bytes
 
-std::string trimmed(std::string_view text) {
+std::string trimmed_name(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
   return first == text.npos ? std::string() : std::string(text.substr(first, last - first + 1));
 }
@@ -46,7 +46,7 @@ void look_through(std::string_view text, Library& to) {
     if (word == "newmtl") {
       std::string rest;
       std::getline(words, rest);
-      name = trimmed(rest);
+      name = trimmed_name(rest);
       to.places.try_emplace(name, where);
     } else if (word == "Kd") {
       double rgb[3] = {NAN, NAN, NAN};
@@ -101,7 +101,7 @@ Library read_library(const std::string& path) {
   std::map<std::string, int> numbers;
   std::string warnings, errors;
   tinyobj::LoadMtl(&numbers, &made.materials, &stream, &warnings, &errors);
-  for (tinyobj::material_t& m : made.materials) m.name = trimmed(m.name);
+  for (tinyobj::material_t& m : made.materials) m.name = trimmed_name(m.name);
   return made;
 }
 
@@ -197,7 +197,7 @@ class Taker {
  private:
   // Names have slashes of either kind.
   std::string image_path(const tinyobj::material_t& m, const Where& place) const {
-    std::string name = trimmed(m.diffuse_texname);
+    std::string name = trimmed_name(m.diffuse_texname);
     std::ranges::replace(name, '\\', '/');
     try {
       return resolve_(name);

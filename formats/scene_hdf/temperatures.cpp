@@ -7,7 +7,7 @@ namespace suite {
 
 namespace {
 
-const std::string kTable = "/temperatures";
+const std::string kTemperaturesTable = "/temperatures";
 constexpr size_t kLayer = 14;  // numbers a layer
 
 void append(const SlabLayer& l, std::vector<double>& out) {
@@ -52,43 +52,44 @@ void write_table(h5::Writer& w, const Scene& s, TemperatureTable) {
     for (const auto& [key, words] : t.spec.texts)
       text_of.push_back(static_cast<uint32_t>(loads.size() / 2 - 1)), text_name.push_back(key), text.push_back(words);
   }
-  w.put_names(kTable + "/model", pick(s.temperatures, [](const TemperatureBinding& t) { return t.spec.model; }));
-  w.put(kTable + "/size", size, "1", 4);
-  w.put(kTable + "/repeat", repeat, "1");
-  w.put(kTable + "/time", time, "s");
-  w.put(kTable + "/kelvin", kelvin, "K");
-  w.put(kTable + "/layers", layers, "SI", kLayer);
-  w.put(kTable + "/loads/rows", loads, "1", 2);
-  w.put(kTable + "/loads/time", load_time, "s");
-  w.put(kTable + "/loads/values", load, "SI", 4);
-  w.put_names(kTable + "/numbers/name", name);
-  w.put(kTable + "/numbers/value", value, "SI");
+  w.put_names(kTemperaturesTable + "/model",
+              pick(s.temperatures, [](const TemperatureBinding& t) { return t.spec.model; }));
+  w.put(kTemperaturesTable + "/size", size, "1", 4);
+  w.put(kTemperaturesTable + "/repeat", repeat, "1");
+  w.put(kTemperaturesTable + "/time", time, "s");
+  w.put(kTemperaturesTable + "/kelvin", kelvin, "K");
+  w.put(kTemperaturesTable + "/layers", layers, "SI", kLayer);
+  w.put(kTemperaturesTable + "/loads/rows", loads, "1", 2);
+  w.put(kTemperaturesTable + "/loads/time", load_time, "s");
+  w.put(kTemperaturesTable + "/loads/values", load, "SI", 4);
+  w.put_names(kTemperaturesTable + "/numbers/name", name);
+  w.put(kTemperaturesTable + "/numbers/value", value, "SI");
   if (text.empty()) return;
-  w.put(kTable + "/texts/temperature", text_of, "1");
-  w.put_names(kTable + "/texts/name", text_name);
-  w.put_names(kTable + "/texts/text", text);
+  w.put(kTemperaturesTable + "/texts/temperature", text_of, "1");
+  w.put_names(kTemperaturesTable + "/texts/name", text_name);
+  w.put_names(kTemperaturesTable + "/texts/text", text);
 }
 
 void read_table(h5::Reader& r, Scene& s, Loading& loading, TemperatureTable) {
-  const std::vector<std::string> model = r.get_names(kTable + "/model");
+  const std::vector<std::string> model = r.get_names(kTemperaturesTable + "/model");
   const auto n = static_cast<long long>(model.size());
-  const auto size = r.get<uint32_t>(kTable + "/size", "1", 4, n);
-  const auto repeat = r.get<uint8_t>(kTable + "/repeat", "1", 1, n);
-  Stretch<double> time(r, kTable + "/time", "s"), kelvin(r, kTable + "/kelvin", "K");
-  const auto layers = r.get<double>(kTable + "/layers", "SI", kLayer);
-  const auto rows = r.get<uint32_t>(kTable + "/loads/rows", "1", 2, n);
-  Stretch<double> load_time(r, kTable + "/loads/time", "s");
-  const auto load = r.get<double>(kTable + "/loads/values", "SI", 4);
+  const auto size = r.get<uint32_t>(kTemperaturesTable + "/size", "1", 4, n);
+  const auto repeat = r.get<uint8_t>(kTemperaturesTable + "/repeat", "1", 1, n);
+  Stretch<double> time(r, kTemperaturesTable + "/time", "s"), kelvin(r, kTemperaturesTable + "/kelvin", "K");
+  const auto layers = r.get<double>(kTemperaturesTable + "/layers", "SI", kLayer);
+  const auto rows = r.get<uint32_t>(kTemperaturesTable + "/loads/rows", "1", 2, n);
+  Stretch<double> load_time(r, kTemperaturesTable + "/loads/time", "s");
+  const auto load = r.get<double>(kTemperaturesTable + "/loads/values", "SI", 4);
   size_t at_load = 0;
-  const std::vector<std::string> name = r.get_names(kTable + "/numbers/name");
-  const auto value = r.get<double>(kTable + "/numbers/value", "SI", 1, static_cast<long long>(name.size()));
+  const std::vector<std::string> name = r.get_names(kTemperaturesTable + "/numbers/name");
+  const auto value = r.get<double>(kTemperaturesTable + "/numbers/value", "SI", 1, static_cast<long long>(name.size()));
   std::vector<uint32_t> text_of;
   std::vector<std::string> text_name, text;
-  if (r.has(kTable + "/texts/text")) {
-    text = r.get_names(kTable + "/texts/text");
+  if (r.has(kTemperaturesTable + "/texts/text")) {
+    text = r.get_names(kTemperaturesTable + "/texts/text");
     const auto texts = static_cast<long long>(text.size());
-    text_name = r.get_names(kTable + "/texts/name", texts);
-    text_of = r.get<uint32_t>(kTable + "/texts/temperature", "1", 1, texts);
+    text_name = r.get_names(kTemperaturesTable + "/texts/name", texts);
+    text_of = r.get<uint32_t>(kTemperaturesTable + "/texts/temperature", "1", 1, texts);
     for (const uint32_t of : text_of)
       if (of >= model.size()) r.fail("a text belongs to no temperature");
   }

@@ -14,7 +14,7 @@ namespace suite {
 namespace {
 
 constexpr std::string_view kFirstLine = "VOXEL SPACE";
-constexpr double kMostCells = 1 << 28;
+constexpr double kMostAmapvoxCells = 1 << 28;
 // A file may leave out empty cells, but not nearly all of a huge grid: cells for each of its bytes.
 constexpr double kCellsOfByte = 1000;
 
@@ -125,9 +125,9 @@ void Reader::check_grid() {
     data_.cells[static_cast<size_t>(c)] = static_cast<uint32_t>(n);
     cells *= n;
   }
-  if (cells > kMostCells || cells > kCellsOfByte * static_cast<double>(lines_.bytes()))
+  if (cells > kMostAmapvoxCells || cells > kCellsOfByte * static_cast<double>(lines_.bytes()))
     throw lines_.error(0, strf("#split into %g cells", cells),
-                       strf("at most %g, and %g for each byte of the file", kMostCells, kCellsOfByte));
+                       strf("at most %g, and %g for each byte of the file", kMostAmapvoxCells, kCellsOfByte));
   const Vec3 size = *high_ - *low_;
   for (int c = 0; c < 3 && cell_; ++c)
     if (const double side = size[c] / (*split_)[c]; !(std::fabs((*cell_)[c] - side) <= 1e-3 * side)) {

@@ -38,7 +38,7 @@ constexpr Unit kUnits[] = {{"K", "K", 1, 0},
                            {"m", "cm", 0.01, 0},
                            {"m", "mm", 0.001, 0}};
 
-struct Column {
+struct CsvColumn {
   Q quantity = Q::air_temperature;
   double scale = 1, offset = 0;
 };
@@ -49,7 +49,7 @@ struct Head {
   bool stamps_begin = false;
   std::optional<Geodetic> site;
   std::optional<double> utc_offset;
-  std::vector<Column> columns;
+  std::vector<CsvColumn> columns;
 };
 
 std::string_view trimmed(std::string_view s) {
@@ -58,7 +58,7 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
-Column read_column(const TextLines& lines, size_t i, WeatherTable& table) {
+CsvColumn read_column(const TextLines& lines, size_t i, WeatherTable& table) {
   const std::string_view text = lines.word(i);
   const size_t open = text.find('['), close = text.rfind(']');
   if (open == std::string_view::npos || close != text.size() - 1)
@@ -178,7 +178,7 @@ WeatherTable parse_csv(std::string_view text, const std::string& file, const Wea
     WeatherRow& row = add_row(table, lines);
     stamps.push_back(read_time(lines, head));
     for (size_t i = 0; i < head.columns.size(); ++i) {
-      const Column& c = head.columns[i];
+      const CsvColumn& c = head.columns[i];
       if (lines.word(i + 1).empty() || lines.word(i + 1) == "nan") continue;
       row.value(c.quantity) = c.scale * lines.number(i + 1, "value") + c.offset;
     }

@@ -9,28 +9,28 @@ namespace {
 
 using Q = WeatherQuantity;
 
-struct Column {
+struct Psm3Column {
   Q quantity;
   const char* name;
   double scale, offset, low, high;  // what may stand there
 };
-constexpr Column kColumns[] = {{Q::global, "GHI", 1, 0, 0, 2000},
-                               {Q::direct_normal, "DNI", 1, 0, 0, 2000},
-                               {Q::diffuse, "DHI", 1, 0, 0, 2000},
-                               {Q::air_temperature, "Temperature", 1, kFreezing, -100, 100},
-                               {Q::dew_point, "Dew Point", 1, kFreezing, -150, 100},
-                               {Q::relative_humidity, "Relative Humidity", 0.01, 0, 0, 110},
-                               {Q::pressure, "Pressure", 100, 0, 200, 1200},
-                               {Q::wind_speed, "Wind Speed", 1, 0, 0, 150}};
+constexpr Psm3Column kPsm3Columns[] = {{Q::global, "GHI", 1, 0, 0, 2000},
+                                       {Q::direct_normal, "DNI", 1, 0, 0, 2000},
+                                       {Q::diffuse, "DHI", 1, 0, 0, 2000},
+                                       {Q::air_temperature, "Temperature", 1, kFreezing, -100, 100},
+                                       {Q::dew_point, "Dew Point", 1, kFreezing, -150, 100},
+                                       {Q::relative_humidity, "Relative Humidity", 0.01, 0, 0, 110},
+                                       {Q::pressure, "Pressure", 100, 0, 200, 1200},
+                                       {Q::wind_speed, "Wind Speed", 1, 0, 0, 150}};
 
-size_t find(const TextLines& head, std::string_view name) {
+size_t psm3_find(const TextLines& head, std::string_view name) {
   for (size_t i = 0; i < head.words(); ++i)
     if (head.word(i) == name) return i;
   return head.words();
 }
 
 size_t need(const TextLines& head, std::string_view name) {
-  const size_t at = find(head, name);
+  const size_t at = psm3_find(head, name);
   if (at == head.words()) throw head.error(0, "no column '" + std::string(name) + "'", "files of NSRDB PSM3 have it");
   return at;
 }
@@ -54,10 +54,10 @@ WeatherTable parse_psm3(std::string_view text, const std::string& file, const We
   split_at_commas(lines);
   const size_t stamp[] = {need(lines, "Year"), need(lines, "Month"), need(lines, "Day"), need(lines, "Hour"),
                           need(lines, "Minute")};
-  std::vector<std::pair<const Column*, size_t>> columns;
-  for (const Column& c : kColumns)
-    if (const size_t at = find(lines, c.name); at < lines.words()) columns.push_back({&c, at});
-  const size_t direction = find(lines, "Wind Direction"), names = lines.words();
+  std::vector<std::pair<const Psm3Column*, size_t>> columns;
+  for (const Psm3Column& c : kPsm3Columns)
+    if (const size_t at = psm3_find(lines, c.name); at < lines.words()) columns.push_back({&c, at});
+  const size_t direction = psm3_find(lines, "Wind Direction"), names = lines.words();
   table.notes.push_back(strf("times are UTC%+g h; values are those of the stamp", utc_offset / 3600));
   std::vector<LocalStamp> stamps;
   while (lines.next_raw()) {

@@ -13,33 +13,33 @@ namespace {
 
 using Q = WeatherQuantity;
 
-constexpr double kNone = -9999;  // this and less
+constexpr double kSurfradNone = -9999;  // this and less
 constexpr size_t kWords = 48, kZenith = 7;
 
-struct Column {
+struct SurfradColumn {
   Q quantity;
   size_t word;  // its flag follows
   const char* name;
   double scale, offset;
 };
-constexpr Column kColumns[] = {{Q::global, 8, "downwelling solar", 1, 0},
-                               {Q::shortwave_up, 10, "upwelling solar", 1, 0},
-                               {Q::direct_normal, 12, "direct normal solar", 1, 0},
-                               {Q::diffuse, 14, "diffuse solar", 1, 0},
-                               {Q::longwave_down, 16, "downwelling infrared", 1, 0},
-                               {Q::longwave_up, 22, "upwelling infrared", 1, 0},
-                               {Q::air_temperature, 38, "air temperature", 1, kFreezing},
-                               {Q::relative_humidity, 40, "relative humidity", 0.01, 0},
-                               {Q::wind_speed, 42, "wind speed", 1, 0},
-                               {Q::pressure, 46, "pressure", 100, 0}};
-constexpr size_t kWindDirection = 44;
+constexpr SurfradColumn kSurfradColumns[] = {{Q::global, 8, "downwelling solar", 1, 0},
+                                             {Q::shortwave_up, 10, "upwelling solar", 1, 0},
+                                             {Q::direct_normal, 12, "direct normal solar", 1, 0},
+                                             {Q::diffuse, 14, "diffuse solar", 1, 0},
+                                             {Q::longwave_down, 16, "downwelling infrared", 1, 0},
+                                             {Q::longwave_up, 22, "upwelling infrared", 1, 0},
+                                             {Q::air_temperature, 38, "air temperature", 1, kFreezing},
+                                             {Q::relative_humidity, 40, "relative humidity", 0.01, 0},
+                                             {Q::wind_speed, 42, "wind speed", 1, 0},
+                                             {Q::pressure, 46, "pressure", 100, 0}};
+constexpr size_t kSurfradWindDirection = 44;
 
 // Whether the value of a word is to be used; what its flag says is counted.
 struct Flags {
   size_t bad = 0, flagged = 0;
   bool use(const TextLines& lines, size_t word, double value) {
     const long long flag = lines.integer(word + 1, "quality flag", 0, 99);
-    if (value <= kNone) return false;
+    if (value <= kSurfradNone) return false;
     if (flag == 1) ++bad;
     if (flag > 1) ++flagged;
     return flag != 1;
@@ -98,13 +98,14 @@ WeatherTable parse_surfrad(std::string_view text, const std::string& file, const
     WeatherRow& row = add_row(table, lines);
     ends.push_back(instant_of(s, 0));
     zeniths.push_back({ends.back(), kDegree * lines.number_in(kZenith, "zenith angle", 0, 180)});
-    for (const Column& c : kColumns) {
+    for (const SurfradColumn& c : kSurfradColumns) {
       const double v = lines.number(c.word, c.name);
       if (flags.use(lines, c.word, v)) row.value(c.quantity) = c.scale * v + c.offset;
     }
-    const double from = lines.number(kWindDirection, "wind direction");
-    if (flags.use(lines, kWindDirection, from))
-      row.value(Q::wind_from) = azimuth_from_compass_deg(lines.number_in(kWindDirection, "wind direction", 0, 360));
+    const double from = lines.number(kSurfradWindDirection, "wind direction");
+    if (flags.use(lines, kSurfradWindDirection, from))
+      row.value(Q::wind_from) =
+          azimuth_from_compass_deg(lines.number_in(kSurfradWindDirection, "wind direction", 0, 360));
   }
   set_stamps(table, ends);
   table.notes.push_back(strf("times are UTC; values are means of the %g min that end at the stamp", table.step / 60));

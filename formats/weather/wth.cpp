@@ -11,11 +11,11 @@ namespace {
 using Q = WeatherQuantity;
 
 constexpr double kLangleyAnHour = 41840.0 / 3600;  // W/m2
-constexpr size_t kColumns = 13;
+constexpr size_t kWthColumns = 13;
 
 void read_row(WeatherRow& row, const TextLines& lines) {
-  if (lines.words() != kColumns)
-    throw lines.error(0, strf("a row of %zu values", lines.words()), strf("%zu stand in one", kColumns));
+  if (lines.words() != kWthColumns)
+    throw lines.error(0, strf("a row of %zu values", lines.words()), strf("%zu stand in one", kWthColumns));
   row.value(Q::air_temperature) = lines.number(1, "air temperature") + kFreezing;
   row.value(Q::pressure) = 100 * lines.number(2, "pressure");
   row.value(Q::relative_humidity) = lines.number(3, "relative humidity");
@@ -24,7 +24,7 @@ void read_row(WeatherRow& row, const TextLines& lines) {
   const double direct = kLangleyAnHour * lines.number(6, "direct insolation");
   row.value(Q::diffuse) = kLangleyAnHour * lines.number(7, "diffuse insolation");
   row.value(Q::global) = direct + row.value(Q::diffuse);
-  for (size_t i = 8; i < kColumns; ++i) lines.number(i, "value");
+  for (size_t i = 8; i < kWthColumns; ++i) lines.number(i, "value");
 }
 
 }  // namespace

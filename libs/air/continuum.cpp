@@ -8,7 +8,8 @@ namespace suite {
 
 namespace {
 
-constexpr double kSecondRadiation = 1.438776877, kReference = 296, kAtmosphere = 101325;  // cm K, K, Pa
+constexpr double kContinuumSecondRadiation = 1.438776877, kContinuumReference = 296,
+                 kContinuumAtmosphere = 101325;  // cm K, K, Pa
 
 double interpolated(const WaterContinuum& c, const std::vector<double>& values, double v) {
   const double x = (v - c.first_cm) / c.step_cm;
@@ -20,17 +21,19 @@ double interpolated(const WaterContinuum& c, const std::vector<double>& values, 
 }  // namespace
 
 double WaterContinuum::self_section(double v, double temperature) const {
-  const double cold = kReference / temperature;
+  const double cold = kContinuumReference / temperature;
   return 1e-4 * interpolated(*this, self, v) * std::pow(cold, interpolated(*this, exponent, v)) *
-         radiation_field(v, temperature) * cold / kAtmosphere;
+         radiation_field(v, temperature) * cold / kContinuumAtmosphere;
 }
 
 double WaterContinuum::foreign_section(double v, double temperature) const {
-  return 1e-4 * interpolated(*this, foreign, v) * radiation_field(v, temperature) * kReference / temperature /
-         kAtmosphere;
+  return 1e-4 * interpolated(*this, foreign, v) * radiation_field(v, temperature) * kContinuumReference / temperature /
+         kContinuumAtmosphere;
 }
 
-double radiation_field(double v, double temperature) { return v * std::tanh(0.5 * kSecondRadiation * v / temperature); }
+double radiation_field(double v, double temperature) {
+  return v * std::tanh(0.5 * kContinuumSecondRadiation * v / temperature);
+}
 
 void check_continuum(const WaterContinuum& c) {
   if (!(c.step_cm > 0)) throw Error("a water continuum with a step of " + strf("%g cm-1", c.step_cm), "it is positive");

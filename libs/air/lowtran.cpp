@@ -34,7 +34,7 @@ struct LowtranBand {
 #include "air/lowtran_table.inc"
 
 constexpr double kLoschmidt = 2.6868e25;  // 1/m3 at 0 C, 1 atm, as LOWTRAN has it
-constexpr double kOneAtmosphere = 101325, kFreezing = 273.15, kAvogadro = 6.02214076e23;
+constexpr double kOneAtmosphere = 101325, kFreezing = 273.15, kLowtranAvogadro = 6.02214076e23;
 constexpr int kStep = 5, kLowest = 10, kHighest = 50000;  // cm-1
 constexpr double kHugginsLow = 27370, kFarLow = 40800;    // cm-1, where ozone's tables begin
 constexpr size_t kLawPoints = kBandLawPoints, kLawSize = 1 + 2 * kLawPoints;
@@ -61,7 +61,7 @@ double interpolated(const Table& table, double first, double step, double v) {
 // Amount of a gas in 1 m of path: atm cm, of water g/cm2.
 double amount(const AirLevel& level, Gas gas) {
   const double molecules = level.density() * level.share(gas);
-  if (gas == Gas::h2o) return molecules / kAvogadro * molar_mass(gas) * 0.1;
+  if (gas == Gas::h2o) return molecules / kLowtranAvogadro * molar_mass(gas) * 0.1;
   return molecules / kLoschmidt * 100;
 }
 

@@ -17,7 +17,7 @@ using namespace small;
 namespace ordinates {
 
 namespace {
-constexpr int kCells = kMostRows * kMostRows;
+constexpr int kCellsOfSweep = kMostRows * kMostRows;
 
 template <class Number>
 void grow(std::vector<Number>& v, size_t size) {
@@ -50,7 +50,7 @@ void DiscreteOrdinates::State::prepare_modes(Order& o, int l) {
     std::copy(below.S, below.S + 2 * n * n + n, modes.S);
     return;
   }
-  double a[kCells], b[kCells];
+  double a[kCellsOfSweep], b[kCellsOfSweep];
   std::fill(a, a + n * n, 0.0);
   std::fill(b, b + n * n, 0.0);
   const double* c = coefficient(l);
@@ -97,7 +97,7 @@ void DiscreteOrdinates::State::prepare_layer(Order& o, int l) {
   factor_lu(at.factor, at.pivot, n);
   std::copy(at.t, at.t + n * n, at.pass);
   solve_lu(at.factor, at.pivot, at.pass, n, n);
-  double product[kCells];
+  double product[kCellsOfSweep];
   double* above = o.below.data() + l * n * n;
   multiply(at.R, at.pass, product, n);
   multiply(at.t, product, above, n);

@@ -11,15 +11,15 @@ namespace suite {
 
 namespace {
 
-constexpr double kGreen = 0.55;  // um
-constexpr double kNone = 1e-12;  // of what absorbs
+constexpr double kGreenUm = 0.55;  // um
+constexpr double kNone = 1e-12;    // of what absorbs
 
-double logarithm(double x) { return std::log(x); }
+double natural_log(double x) { return std::log(x); }
 
 // Over the logarithm of the wavelength, of logarithms where there are any.
 template <class Value>
 double along(const std::vector<double>& wavelengths, double wavelength_um, const Value& value) {
-  const Between at = between(wavelengths, wavelength_um, logarithm);
+  const Between at = between(wavelengths, wavelength_um, natural_log);
   if (!(at.share > 0)) return value(at.low);
   const double a = value(at.low), b = value(at.low + 1);
   return a > 0 && b > 0 ? a * std::pow(b / a, at.share) : a + at.share * (b - a);
@@ -35,17 +35,19 @@ double ParticleData::albedo_at(double wavelength_um) const {
   return 1 - along(wavelengths_um, wavelength_um, [&](size_t i) { return std::max(1 - albedo[i], kNone); });
 }
 
-bool ParticleData::reaches_green() const { return wavelengths_um.front() <= kGreen && kGreen <= wavelengths_um.back(); }
+bool ParticleData::reaches_green() const {
+  return wavelengths_um.front() <= kGreenUm && kGreenUm <= wavelengths_um.back();
+}
 
 std::optional<double> ParticleData::green() const {
   if (relative) return 1;
   if (!reaches_green()) return std::nullopt;
-  return extinction_at(kGreen);
+  return extinction_at(kGreenUm);
 }
 
 template <class Use>
 void ParticleData::each_phase(double wavelength_um, const Use& use) const {
-  const Between at = between(phase_um, wavelength_um, logarithm);
+  const Between at = between(phase_um, wavelength_um, natural_log);
   for (const bool up : {false, true}) {
     const double share = up ? at.share : 1 - at.share;
     if (!(share > 0)) continue;

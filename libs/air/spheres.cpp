@@ -13,7 +13,7 @@ namespace suite {
 
 namespace {
 
-constexpr double kGreen = 0.55;  // um
+constexpr double kGreenOfSpheres = 0.55;  // um
 
 std::complex<double> index_at(const SphereSpec& spheres, double w) {
   for (const Curve* of : {&spheres.n, &spheres.k})
@@ -28,7 +28,7 @@ ParticleOptics sphere_optics(const SphereSpec& spheres, std::span<const double> 
   if (!(spheres.density >= 0 && std::isfinite(spheres.density)))
     throw Error(strf("particles '%s': the density %g is negative", spheres.name.c_str(), spheres.density));
   std::vector<double> all(wavelengths.begin(), wavelengths.end());
-  if (spheres.density == 0) all.push_back(kGreen);
+  if (spheres.density == 0) all.push_back(kGreenOfSpheres);
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   std::vector<std::complex<double>> index;
@@ -45,7 +45,7 @@ ParticleOptics sphere_optics(const SphereSpec& spheres, std::span<const double> 
   const auto extinction = [&](const BulkOptics& bulk) {
     return spheres.density > 0 ? bulk.mass_extinction(spheres.density) : bulk.extinction_um2;
   };
-  const double unit = spheres.density > 0 ? 1 : made[number(kGreen)].extinction_um2;
+  const double unit = spheres.density > 0 ? 1 : made[number(kGreenOfSpheres)].extinction_um2;
   ParticleOptics optics;
   std::vector<size_t> entries;
   for (const double w : wavelengths) {

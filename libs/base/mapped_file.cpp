@@ -24,13 +24,13 @@ size_t page() {
 }
 size_t whole_pages(size_t bytes) { return (bytes + page() - 1) / page() * page(); }
 
-[[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& hint = {}) {
+[[noreturn]] void fail_mapping(const std::string& path, const std::string& what, const std::string& hint = {}) {
   throw Error(Where{path, 0, 0, {}, -1}, what, hint);
 }
 
 std::byte* mapped(int descriptor, size_t offset, size_t bytes, int protection, const std::string& path) {
   void* at = ::mmap(nullptr, bytes, protection, MAP_SHARED, descriptor, static_cast<off_t>(offset));
-  if (at == MAP_FAILED) fail(path, strf("cannot be mapped: %s", std::strerror(errno)));
+  if (at == MAP_FAILED) fail_mapping(path, strf("cannot be mapped: %s", std::strerror(errno)));
   return static_cast<std::byte*>(at);
 }
 
@@ -45,7 +45,8 @@ int nameless(const std::string& folder) {
   std::string name = folder + "/suite-spill-XXXXXX";
   const int fd = ::mkostemp(name.data(), O_CLOEXEC);
   if (fd < 0)
-    fail(folder, strf("no file can be made there: %s", std::strerror(errno)), "set TMPDIR to a folder with room");
+    fail_mapping(folder, strf("no file can be made there: %s", std::strerror(errno)),
+                 "set TMPDIR to a folder with room");
   ::unlink(name.c_str());
   return fd;
 }
@@ -72,7 +73,7 @@ SpillFile::SpillFile(std::string folder) : folder_(folder.empty() ? temporary_fo
 // another one may have that number, so the file itself is told, too.
 std::string SpillFile::address() const {
   struct stat info {};
-  if (::fstat(descriptor_, &info) != 0) fail(folder_, strf("cannot be examined: %s", std::strerror(errno)));
+  if (::fstat(descriptor_, &info) != 0) fail_mapping(folder_, strf("cannot be examined: %s", std::strerror(errno)));
   return strf("%llx.%llx /proc/%d/fd/%d", static_cast<unsigned long long>(info.st_dev),
               static_cast<unsigned long long>(info.st_ino), static_cast<int>(::getpid()), descriptor_);
 }
@@ -93,13 +94,13 @@ SpillFile::~SpillFile() { ::close(descriptor_); }
 size_t SpillFile::reserve(size_t bytes) {
   const size_t begin = end_, room = free_bytes(folder_);
   const auto none = [&](const char* why) {
-    fail(folder_,
-         human_bytes(static_cast<double>(bytes)) + " are needed there, and " + human_bytes(static_cast<double>(room)) +
-             " are free" + why,
-         "set TMPDIR to a folder with room");
+    fail_mapping(folder_,
+                 human_bytes(static_cast<double>(bytes)) + " are needed there, and " +
+                     human_bytes(static_cast<double>(room)) + " are free" + why,
+                 "set TMPDIR to a folder with room");
   };
   struct stat info {};
-  if (::fstat(descriptor_, &info) != 0) fail(folder_, strf("cannot be examined: %s", std::strerror(errno)));
+  if (::fstat(descriptor_, &info) != 0) fail_mapping(folder_, strf("cannot be examined: %s", std::strerror(errno)));
   end_ += whole_pages(bytes);
   // Another process may have taken it already.
   if (static_cast<size_t>(info.st_size) >= end_) return begin;

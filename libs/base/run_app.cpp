@@ -62,10 +62,10 @@ bool Cli::given(const std::string& name) const { return impl_->app.count(name) >
 namespace {
 
 std::string g_command_line;
-bool g_silent = false;
+bool g_run_app_silent = false;
 
 void say(const std::string& text) {
-  if (!g_silent) std::fputs(text.c_str(), stderr);
+  if (!g_run_app_silent) std::fputs(text.c_str(), stderr);
 }
 
 std::shared_ptr<spdlog::logger> logger() {
@@ -115,13 +115,13 @@ int usage_error(const AppInfo& info, CLI::App& app, const std::string& text, con
 const std::string& command_line() { return g_command_line; }
 
 void note(const std::string& text) {
-  if (!g_silent) logger()->info("{}", printable_lines(text));
+  if (!g_run_app_silent) logger()->info("{}", printable_lines(text));
 }
 void warn(const std::string& text) {
-  if (!g_silent) logger()->warn("warning: {}", printable_lines(text));
+  if (!g_run_app_silent) logger()->warn("warning: {}", printable_lines(text));
 }
 void set_silent(bool silent) {
-  g_silent = silent;
+  g_run_app_silent = silent;
   Progress::set_silent(silent);
 }
 
@@ -152,7 +152,7 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   } catch (const UsageError& e) {
     return usage_error(info, app, e.what(), {});
   } catch (const CLI::Success& e) {
-    return g_silent ? e.get_exit_code() : app.exit(e);
+    return g_run_app_silent ? e.get_exit_code() : app.exit(e);
   } catch (const CLI::ExtrasError&) {
     return usage_error(info, app, "", app.remaining());
   } catch (const CLI::ParseError& e) {

@@ -8,7 +8,7 @@ namespace suite {
 
 namespace {
 
-constexpr double kMicrowatts = 0.1;  // uW/(cm2 nm) in W/(m2 um)
+constexpr double kLutBandsMicrowatts = 0.1;  // uW/(cm2 nm) in W/(m2 um)
 
 class Means {
  public:
@@ -56,8 +56,8 @@ LutValues lut_values(const CorrectionBins& c, std::span<const float> sun, double
   v[of(LutKey::down_diffuse)] = means.sunlit(down_diffuse);
   v[of(LutKey::up_direct)] = means.sunlit([&](size_t i) { return c.up_direct[i]; });
   v[of(LutKey::up_diffuse)] = means.sunlit(up_diffuse);
-  v[of(LutKey::emission_up)] = means.plain([&](size_t i) { return kMicrowatts * c.emission_up[i]; });
-  v[of(LutKey::emission_down)] = means.plain([&](size_t i) { return kMicrowatts * c.emission_down[i]; });
+  v[of(LutKey::emission_up)] = means.plain([&](size_t i) { return kLutBandsMicrowatts * c.emission_up[i]; });
+  v[of(LutKey::emission_down)] = means.plain([&](size_t i) { return kLutBandsMicrowatts * c.emission_down[i]; });
   v[of(LutKey::direct_direct)] = means.sunlit([&](size_t i) { return c.down_direct[i] * c.up_direct[i]; });
   v[of(LutKey::diffuse_direct)] = means.sunlit([&](size_t i) { return down_diffuse(i) * c.up_direct[i]; });
   v[of(LutKey::direct_diffuse)] = means.sunlit([&](size_t i) { return c.down_direct[i] * up_diffuse(i); });

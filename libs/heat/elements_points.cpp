@@ -12,7 +12,7 @@ namespace {
 constexpr uint32_t kAttempts = 4096;  // to find a point of a material, or past a stretch
 
 // What an area grows by under a transform.
-double stretch_of(const Affine3& m, Vec3 unit_normal) { return length(m.normal(unit_normal)); }
+double stretch_along(const Affine3& m, Vec3 unit_normal) { return length(m.normal(unit_normal)); }
 
 // No stretch is larger.
 double most_stretch(const Affine3& m) {
@@ -21,8 +21,8 @@ double most_stretch(const Affine3& m) {
 }
 
 bool keeps_shape(const Affine3& m) {
-  const double a = stretch_of(m, {1, 0, 0}), b = stretch_of(m, {0, 1, 0}), c = stretch_of(m, {0, 0, 1});
-  const double d = stretch_of(m, normalized(Vec3{1, 1, 1}));
+  const double a = stretch_along(m, {1, 0, 0}), b = stretch_along(m, {0, 1, 0}), c = stretch_along(m, {0, 0, 1});
+  const double d = stretch_along(m, normalized(Vec3{1, 1, 1}));
   return std::max({a, b, c, d}) < (1 + 1e-9) * std::min({a, b, c, d});
 }
 
@@ -79,7 +79,7 @@ Hit Elements::cell_point(uint32_t cell, const PointDraw& draw, uint32_t& attempt
     const Local p = local_point(group, cell, u);
     const bool last = attempt + 1 >= kAttempts;
     if (group.mesh) return tracer_.on_triangle(s.object, p.triangle, p.u, p.v, time_of(s, draw.interval));
-    const double kept = p.stretch * stretch_of(s.to_world, p.normal) / most_stretch(s.to_world);
+    const double kept = p.stretch * stretch_along(s.to_world, p.normal) / most_stretch(s.to_world);
     if (last || (p.stretch == 1 && keeps_shape(s.to_world)) || u[3] < kept)
       return tracer_.on_exact(s.object, p.position, p.normal, p.uv, time_of(s, draw.interval));
   }

@@ -11,7 +11,7 @@ namespace suite {
 
 namespace {
 
-constexpr uint64_t kPurpose = 0x61756469;
+constexpr uint64_t kHeatAuditPurpose = 0x61756469;
 constexpr size_t kTogether = 64;  // probes
 
 // Even over area and time: rows of a lattice (the golden section), in a random place.
@@ -22,14 +22,14 @@ std::vector<AuditProbe> places(const AuditedScene& scene, const SolvedSurfaces& 
   for (size_t f = 0; f < scene.faces.size(); ++f)
     until.push_back(area += wanted.empty() || wanted[f] ? scene.elements[scene.faces.element(f)].area : 0);
   const std::vector<double>& moments = solved.weather.moments;
-  const double golden = (std::sqrt(5.0) - 1) / 2, shift = unit_double(hash_of(scene.seed, kPurpose));
+  const double golden = (std::sqrt(5.0) - 1) / 2, shift = unit_double(hash_of(scene.seed, kHeatAuditPurpose));
   std::vector<AuditProbe> out(count);
   for (size_t i = 0; i < count; ++i) {
     const double u = std::fmod(static_cast<double>(i) * golden + shift, 1.0);
     const auto at = std::upper_bound(until.begin(), until.end(), u * area) - until.begin();
     out[i].face = static_cast<uint32_t>(std::min<std::ptrdiff_t>(at, static_cast<std::ptrdiff_t>(until.size()) - 1));
     const double share =
-        (static_cast<double>(i) + unit_double(hash_of(scene.seed, kPurpose, i))) / static_cast<double>(count);
+        (static_cast<double>(i) + unit_double(hash_of(scene.seed, kHeatAuditPurpose, i))) / static_cast<double>(count);
     out[i].time = moments.front() + share * (moments.back() - moments.front());
   }
   return out;
@@ -52,9 +52,9 @@ HeatAudit audit_heat(const AuditedScene& scene, const SolvedSurfaces& solved, si
       const size_t end = std::min(probes, (piece + 1) * kTogether);
       for (size_t i = piece * kTogether; i < end; ++i) {
         AuditProbe& p = out.probes[i];
-        const Hit hit =
-            scene.elements.point(scene.faces.element(p.face), {SampleStream(scene.seed, kPurpose, i), 0, kPointBlock});
-        WalkNumbers numbers(hash_of(scene.seed, kPurpose, i), 1);
+        const Hit hit = scene.elements.point(scene.faces.element(p.face),
+                                             {SampleStream(scene.seed, kHeatAuditPurpose, i), 0, kPointBlock});
+        WalkNumbers numbers(hash_of(scene.seed, kHeatAuditPurpose, i), 1);
         p.at = hit.position, p.found = tables.kelvin(p.face, p.time);
         for (int k = 0; k < 2; ++k) {
           const AuditWalk::Found found = walk.follow(hit, p.face, p.time, numbers);

@@ -53,10 +53,10 @@ Vec2 numbers_of(const HeatedPlace& place) {
 
 }  // namespace
 
-static std::atomic<uint64_t> numbers = 1;
+static std::atomic<uint64_t> heat_numbers = 1;
 
 PointHeat::PointHeat(const HeatScene& scene, const WeatherLoads& weather, const HeatResult& result)
-    : number_(numbers++),
+    : number_(heat_numbers++),
       scene_(scene),
       weather_(weather),
       result_(result),

@@ -11,9 +11,9 @@ namespace suite {
 
 namespace {
 
-constexpr double kHat = 100;       // W/m2
-constexpr double kSettled = 1e-3;  // K
-constexpr int kTurns = 60;
+constexpr double kHat = 100;               // W/m2
+constexpr double kSettledResponse = 1e-3;  // K
+constexpr int kResponseTurns = 60;
 constexpr float kNothing = 0.01f;  // W/m2
 
 double lost(const FaceTraits& traits, const FaceWeather& weather, double kelvin) {
@@ -72,7 +72,7 @@ bool PointResponse::above(const Around& around, std::span<const float> q, std::s
   if (std::ranges::all_of(more, [](float x) { return std::fabs(x) < kNothing; })) return true;
   std::vector<double> before(n);
   for (size_t m = 0; m < n; ++m) before[m] = lost(around.traits, around.weather[m], double{around.kelvin[m]});
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int turn = 0; turn < kResponseTurns; ++turn) {
     std::ranges::fill(next, 0.0f);
     for (size_t m = 0; m < n; ++m) {
       const double off = double{d[m]};
@@ -92,7 +92,7 @@ bool PointResponse::above(const Around& around, std::span<const float> q, std::s
     }
     d.swap(next);
     if (!sound) return false;
-    if (change >= static_cast<float>(kSettled)) continue;
+    if (change >= static_cast<float>(kSettledResponse)) continue;
     std::ranges::copy(d, kelvin.begin());
     kelvin[n] = d[0];
     return true;

@@ -12,10 +12,10 @@ namespace suite {
 
 namespace {
 
-constexpr uint64_t kPurpose = 0x6d697272;
-constexpr uint32_t kRouletteFrom = 2;    // surfaces
-constexpr double kMostPoints = 1 << 14;  // of a place, in a block at a moment
-constexpr uint32_t kDrawBlock = 2;       // of random numbers, from here on: surfaces on the way
+constexpr uint64_t kSunlightMirroredPurpose = 0x6d697272;
+constexpr uint32_t kMirroredRouletteFrom = 2;  // surfaces
+constexpr double kMostPoints = 1 << 14;        // of a place, in a block at a moment
+constexpr uint32_t kDrawBlock = 2;             // of random numbers, from here on: surfaces on the way
 
 struct Deposit {
   uint32_t face, block, moment;
@@ -103,7 +103,7 @@ class Follower {
     for (uint32_t b = 0; b < options_.blocks; ++b)
       for (uint32_t k = 0; k < points; ++k) {
         Going path;
-        path.key = SampleStream::problem_key(options_.seed, kPurpose, place);
+        path.key = SampleStream::problem_key(options_.seed, kSunlightMirroredPurpose, place);
         path.block = b, path.moment = moment, path.sample = moment * points + k;
         const SampleStream numbers(path.key, b);
         const std::array<double, 4> u = numbers.draw(path.sample, 0), v = numbers.draw(path.sample, 1);
@@ -149,7 +149,7 @@ class Follower {
       unfinished_ += left * path.power;
       return std::nullopt;
     }
-    if (n >= kRouletteFrom && !SurfaceWalk::survives(T, left, u[3])) return std::nullopt;
+    if (n >= kMirroredRouletteFrom && !SurfaceWalk::survives(T, left, u[3])) return std::nullopt;
     return drawn->in;
   }
 

@@ -8,7 +8,7 @@ namespace suite {
 
 namespace {
 
-constexpr uint64_t kPurpose = 0x73636174;
+constexpr uint64_t kSunlightScatteredPurpose = 0x73636174;
 constexpr uint32_t kRouletteFrom = 2;  // reflections
 constexpr uint32_t kToldJoins = 2;     // where what is sent on is told
 
@@ -38,7 +38,7 @@ void SunlightWave::start(uint32_t row) {
   double kept_of_sky = 0;
   for (uint32_t k = 0; k < each; ++k) {
     const uint32_t slot = row * each + k;
-    const PathNumbers numbers = numbers_of(slot, kPurpose);
+    const PathNumbers numbers = numbers_of(slot, kSunlightScatteredPurpose);
     const Hit hit =
         elements_.point(faces_.element(face), {numbers.net(), numbers.sample(), kPointBlock, 0, 1, interval});
     const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
@@ -129,7 +129,7 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
   const ScatterModel& model = *at_.baked->model;
   const Dir out = at_.frame.to_local(-ray.direction);
   ask_sun(path, hit, ray.direction, n);
-  const PathNumbers numbers = numbers_of(path.slot, kPurpose);
+  const PathNumbers numbers = numbers_of(path.slot, kSunlightScatteredPurpose);
   const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 1 + n);
   const auto drawn = walk_.draw(model, out, u, path.drawn.knot);
   if (!drawn) return false;
@@ -171,7 +171,7 @@ void SunlightWave::join_sun(const Going& path, const Hit& hit, Dir out, uint32_t
   const ScatterModel& model = *at_.baked->model;
   const uint32_t half = options_.blocks * options_.half();
   const uint32_t joins = lit ? std::min(kToldJoins, joins_) : joins_;
-  const PathNumbers numbers = numbers_of(path.slot, kPurpose);
+  const PathNumbers numbers = numbers_of(path.slot, kSunlightScatteredPurpose);
   const auto number = [&](uint32_t what, uint32_t j) {
     return numbers.net().hashed(numbers.sample(), 64 + 64 * n + 4 * j + what);
   };

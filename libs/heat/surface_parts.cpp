@@ -12,7 +12,7 @@ namespace {
 
 using Member = SurfacePart::Member;
 
-constexpr size_t kTogether = 256;
+constexpr size_t kSurfacePartsTogether = 256;
 
 // Sets that are joined pair by pair (R. Tarjan, J. ACM 22, 1975).
 class Joined {
@@ -81,7 +81,7 @@ class Bodies {
   }
 
   void put(uint32_t row, bool begins) {
-    const bool fits = !parts_.empty() && parts_.back().members.size() < kTogether &&
+    const bool fits = !parts_.empty() && parts_.back().members.size() < kSurfacePartsTogether &&
                       alike(groups_[parts_.back().members.front().group], group(row));
     if (begins && !fits) parts_.emplace_back(), areas_.emplace_back();
     SurfacePart& part = parts_.back();
@@ -123,7 +123,7 @@ std::vector<SurfacePart> surface_parts(std::span<const SurfaceGroup> groups, siz
     };
     for (uint32_t i = 0; i < groups[g].front_rows.size(); ++i) {
       if (!touches[groups[g].front_rows[i]]) members.push_back({g, i});
-      if (members.size() == kTogether) put();
+      if (members.size() == kSurfacePartsTogether) put();
     }
     put();
   }

@@ -15,7 +15,7 @@ namespace {
 using Q = WeatherQuantity;
 
 constexpr double kBlend = 3600;  // s before the end of a span that repeats, over which its end is led to its begin
-constexpr double kLowSun = 1.5 * kDegree;  // elevation below which spectra and the spread of skies are those of here
+constexpr double kLowestSun = 1.5 * kDegree;  // elevation below which spectra and the spread of skies are those of here
 
 // A quantity on ascending times, led back to its first value where the span repeats.
 std::vector<double> on_times(const std::vector<double>& times, const HeatSpec& spec,
@@ -44,7 +44,7 @@ std::vector<float> shares(const Curve& spectrum, const SpectralState& state) {
 }
 
 ClearSky clear_at(Dir sun) {
-  const double elevation = std::max(std::asin(std::clamp(sun.z, -1.0, 1.0)), kLowSun);
+  const double elevation = std::max(std::asin(std::clamp(sun.z, -1.0, 1.0)), kLowestSun);
   return clear_sky({}, {std::cos(elevation), 0, std::sin(elevation)}, solar_irradiance());
 }
 
@@ -86,7 +86,7 @@ void set_spectra(SunCourse& course, bool airless) {
 std::vector<float> patches(Dir sun, double direct, double diffuse, double extraterrestrial) {
   std::vector<float> out(kSkyPatches, 0.0f);
   if (!(diffuse > 0)) return out;
-  const double zenith = std::min(polar_angle(sun), kPi / 2 - kLowSun);
+  const double zenith = std::min(polar_angle(sun), kPi / 2 - kLowestSun);
   const PerezSky sky(zenith, direct, diffuse, extraterrestrial, air_mass(zenith));
   constexpr int kInside = 4;  // places of a part in each direction
   double level = 0;

@@ -75,7 +75,7 @@ void FirstScattering::add_stretch(double begin, double end) {
   else
     s.layer = kNone;
   s.fall = std::max(s.extinction, s.rate);
-  const double length = std::min(end - begin, kEndless);
+  const double length = std::min(end - begin, kEndlessWay);
   depth_ += s.extinction * length, leaf_depth_ += s.leaves * length, fall_depth_ += s.fall * length;
   media_depth_ += s.media * length;
   if (s.extinction > 0 || s.rate > 0) stretches_.push_back(s);

@@ -10,7 +10,7 @@
 namespace suite {
 
 namespace {
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kBoundless = std::numeric_limits<double>::infinity();
 
 // The share of light that is scattered on a way of scattering depth x, within 1e-6.
 double scattered(double x) {
@@ -45,7 +45,7 @@ AirVertices::AirVertices(std::shared_ptr<const AirColumn> column, const Spectral
 
 // Where a way that leaves the scene ends, m: what lies past its edge is the even ground.
 double AirVertices::end_of(Vec3 from, Dir d, double length) const {
-  return length == kInfinity ? to_ground(from, d) : length;
+  return length == kBoundless ? to_ground(from, d) : length;
 }
 
 AirVertices::PerKnot AirVertices::chances(Vec3 from, Dir d, double length) const {
@@ -68,7 +68,7 @@ std::optional<AirVertices::Steep> AirVertices::steep(Vec3 from, Dir d, double le
   constexpr double kSteep = 0.12, kShort = 3e4;  // m
   const Shells& shells = column_->shells;
   const double height = shells.height(from), cosine = shells.cosine(from, height, d);
-  const bool out = length == kInfinity;
+  const bool out = length == kBoundless;
   if (std::fabs(cosine) < kSteep || (out ? cosine < 0 : length > kShort)) return std::nullopt;
   Steep way{std::fabs(cosine), height, out ? shells.heights().back() : shells.height(from + d * length), {}, {}};
   depth_over(way.near_height, 1, way.near);
@@ -137,7 +137,7 @@ std::optional<AirVertices::Place> AirVertices::draw_steep(const Steep& way, Vec3
       std::clamp(shells.heights()[l] + (over_[l][knot] - over) / rates[knot], std::min(way.near_height, way.far_height),
                  std::max(way.near_height, way.far_height));
   const double distance = up ? shells.way_up_to(from, d, height) : shells.way_down_to(from, d, height);
-  if (!(distance < kInfinity)) return std::nullopt;
+  if (!(distance < kBoundless)) return std::nullopt;
   Place place{std::clamp(distance, 0.0, length), l, {}};
   const double rise = std::fabs(shells.cosine(from + d * place.distance, height, d)) / way.cosine;
   for (size_t k = 0; k < knots_; ++k) {
@@ -181,12 +181,12 @@ std::optional<AirVertices::Place> AirVertices::draw(Vec3 from, Dir d, double len
 double AirVertices::to_ground(Vec3 from, Dir d) const {
   const Shells& shells = column_->shells;
   if (shells.height(from) > ground_height_) return shells.way_down_to(from, d, ground_height_);
-  return dot(d, shells.up(from)) < 0 ? 0 : kInfinity;
+  return dot(d, shells.up(from)) < 0 ? 0 : kBoundless;
 }
 
 void AirVertices::even(Vec3 from, Dir d, std::span<float> scratch, std::span<float> radiance) const {
   const double ground = to_ground(from, d);
-  if (ground == kInfinity) return air_.skylight(from, d, scratch, radiance);
+  if (ground == kBoundless) return air_.skylight(from, d, scratch, radiance);
   air_.path(from, d, ground, scratch, radiance);
   for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += scratch[i] * ground_[i];
 }
@@ -197,7 +197,7 @@ void AirVertices::beyond(Vec3 from, Dir d, double length, std::span<float> T, st
   air_.transmittance(from, d, std::min(length, ground), T);
   const Vec3 end = from + d * std::min(length, ground);
   if (length <= ground) {  // the even ground, or the sky, would have been seen further on
-    const bool sky = ground == kInfinity;
+    const bool sky = ground == kBoundless;
     sky ? air_.skylight(end, d, scratch, more) : air_.path(end, d, ground - length, scratch, more);
     for (size_t i = 0; i < T.size(); ++i) more[i] = -T[i] * (more[i] + (sky ? 0 : scratch[i] * ground_[i]));
   } else {

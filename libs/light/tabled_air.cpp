@@ -11,7 +11,7 @@ namespace suite {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoGround = std::numeric_limits<double>::infinity();
 constexpr double kOpaque = 1e-6;    // transmittance below which nothing is seen of what lies behind
 constexpr double kRounding = 1e-9;  // of wavelengths, relative
 constexpr double kPencil = 1e-4;    // rad: directions so near to a collimated sun are towards it
@@ -60,14 +60,14 @@ class TabledAir final : public Atmosphere {
   }
 
   void transmittance(Vec3 from, Dir d, double distance, std::span<float> T) const override {
-    if (distance == kInfinity) return outside(from, d, T);
+    if (distance == kNoGround) return outside(from, d, T);
     if (!through_air(from)) return std::fill(T.begin(), T.end(), 1.0f);
     const PathSpectra& path = look_up(from, d, distance);
     std::copy(path.transmittance.begin(), path.transmittance.end(), T.begin());
   }
 
   void path(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const override {
-    if (distance == kInfinity && d.z >= 0) return look_up_sky(from, d, T, S);
+    if (distance == kNoGround && d.z >= 0) return look_up_sky(from, d, T, S);
     if (!through_air(from)) {
       std::fill(T.begin(), T.end(), 1.0f);
       return std::fill(S.begin(), S.end(), 0.0f);
@@ -131,7 +131,7 @@ class TabledAir final : public Atmosphere {
       return std::fill(S.begin(), S.end(), 0.0f);
     }
     if (sky_)
-      if (const auto fault = uncovered(*sky_, world_, sight_of(*sky_, world_, from, d, kInfinity), false))
+      if (const auto fault = uncovered(*sky_, world_, sight_of(*sky_, world_, from, d, kNoGround), false))
         refuse(from, *fault);
     skylight(from, d, T, S);
   }
@@ -166,7 +166,7 @@ class TabledAir final : public Atmosphere {
     }
     if (!ground) throw Error(where_, "no run of the tables has sunlight at the ground");
     PathSpectra path;
-    ground->table.at(place_of(*ground, sight_of(*ground, world_, {}, *world_.sun, kInfinity)), path);
+    ground->table.at(place_of(*ground, sight_of(*ground, world_, {}, *world_.sun, kNoGround)), path);
     const float* above = sun.beam.irradiance;
     for (size_t i = 0; i < bins_; ++i)
       sunlight_.push_back(above[i] > 0 ? static_cast<float>(path.irradiance[i] / double{above[i]}) : 0.0f);
@@ -177,7 +177,7 @@ class TabledAir final : public Atmosphere {
     if (world_.sun) symmetric = azimuth(*world_.sun);
     const auto along = [this](double, Dir d, std::span<float> radiance) {
       PathSpectra path;
-      sky_->table.at(place_of(*sky_, sight_of(*sky_, world_, {}, d, kInfinity)), path);
+      sky_->table.at(place_of(*sky_, sight_of(*sky_, world_, {}, d, kNoGround)), path);
       std::copy(path.radiance.begin(), path.radiance.end(), radiance.begin());
     };
     table_ = std::make_unique<SkyTable>(bins_, !sky_->has(SightAxis::relative_azimuth), symmetric, kSkyStep, along);
@@ -220,7 +220,7 @@ void check_whole_sky(const TabledAirSpec& air, const SightWorld& world) {
   for (const double zenith : {0.0, 90.0})
     for (const double beside : {0.0, 90.0, 180.0}) {
       const Dir d = dir_from_angles(zenith * kDegree, turn + beside * kDegree);
-      if (const auto fault = uncovered(*air.sky, world, sight_of(*air.sky, world, {}, d, kInfinity), false))
+      if (const auto fault = uncovered(*air.sky, world, sight_of(*air.sky, world, {}, d, kNoGround), false))
         throw Error(air.where, "the tables do not have the whole sky over the scene: " + fault->what, fault->hint);
     }
 }
@@ -264,7 +264,7 @@ void check_tabled_air(const TabledAirSpec& air, const SourceSpecs& sources, cons
   if (!air.sun)
     throw Error(air.where, "no run of the tables has sunlight at the ground",
                 "runs with REF_SOL and TOA_SUN (IEMSCT 2), or of the Sun's irradiance (IEMSCT 3); or no `sun`");
-  if (const auto fault = uncovered(*air.sun, world, sight_of(*air.sun, world, {}, *sun, kInfinity), false))
+  if (const auto fault = uncovered(*air.sun, world, sight_of(*air.sun, world, {}, *sun, kNoGround), false))
     throw Error(air.where, "the tables have no run of sunlight at the ground: " + fault->what, fault->hint);
 }
 
@@ -273,7 +273,7 @@ void check_sight(const TabledAirSpec& air, Vec3 from, Dir d, std::optional<Dir> 
   const auto rises = air.sights->covered(SightAxis::view_zenith);
   if (d.z >= 0 && rises && rises->first > kPi / 2) return;
   const SightWorld world = air.world(towards_sun);
-  const auto fault = uncovered(*air.sights, world, sight_of(*air.sights, world, from, d, kInfinity), false);
+  const auto fault = uncovered(*air.sights, world, sight_of(*air.sights, world, from, d, kNoGround), false);
   if (fault)
     throw Error(air.where,
                 strf("the tables have no run for a line of sight from (%.6g, %.6g, %.6g) m: ", from.x, from.y, from.z) +
@@ -287,7 +287,7 @@ std::unique_ptr<const Atmosphere> make_tabled_air(const TabledAirSpec& spec, con
 }
 
 std::pair<double, double> TabledAirSpec::covered_um() const {
-  std::pair<double, double> all{0, kInfinity};
+  std::pair<double, double> all{0, kNoGround};
   for (const auto* runs : {&sights, &sky, &sun})
     if (*runs)
       all = {std::max(all.first, (*runs)->table.wavelength_um().front()),

@@ -45,7 +45,7 @@ Vec3 turn(const double m[3][3], Vec3 v) {
           m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
 }
 
-void check_air(const Refraction& air, double dut1) {
+void check_air(const SiteAir& air, double dut1) {
   if (!(air.pressure >= 0 && air.pressure <= 2e5))
     throw Error(strf("air pressure %g Pa is outside its range", air.pressure), "give 0 (no refraction) to 2e5 Pa");
   if (!(air.temperature >= 150 && air.temperature <= 400))
@@ -67,8 +67,8 @@ SlowSky exact_sky(JulianDate tt, Geometric body) {
   return sky;
 }
 
-SkyBody seen(const SceneFrame& frame, Vec3 site, JulianDate tt, JulianDate ut1, const Refraction& air,
-             const SlowSky& sky, double radius) {
+SkyBody seen(const SceneFrame& frame, Vec3 site, JulianDate tt, JulianDate ut1, const SiteAir& air, const SlowSky& sky,
+             double radius) {
   double to_intermediate[3][3], pole[3][3], to_earth_fixed[3][3];
   eraC2ixys(sky.x, sky.y, sky.locator, to_intermediate);
   eraPom00(0, 0, eraSp00(tt.day, tt.fraction), pole);
@@ -99,7 +99,7 @@ SkyBody seen(const SceneFrame& frame, Vec3 site, JulianDate tt, JulianDate ut1, 
 
 }  // namespace
 
-double refraction_lift(double elevation, const Refraction& air) {
+double refraction_lift(double elevation, const SiteAir& air) {
   const double e = elevation / kDegree;
   if (air.pressure <= 0 || e < -1) return 0;
   const double arc_minutes = 1.02 / std::tan((e + 10.3 / (e + 5.11)) * kDegree);
@@ -107,13 +107,13 @@ double refraction_lift(double elevation, const Refraction& air) {
   return std::fmax(lift, 0.0);  // the formula dips below 0 by 0.1 arc second at the zenith
 }
 
-SkyBody sun_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const Refraction& air) {
+SkyBody sun_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const SiteAir& air) {
   check_air(air, dut1);
   const JulianDate tt = julian_tt(instant);
   return seen(frame, site, tt, julian_ut1(instant, dut1), air, exact_sky(tt, sun_geometric), kSunRadius);
 }
 
-SkyBody moon_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const Refraction& air) {
+SkyBody moon_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const SiteAir& air) {
   check_air(air, dut1);
   const JulianDate tt = julian_tt(instant);
   return seen(frame, site, tt, julian_ut1(instant, dut1), air, exact_sky(tt, moon_geometric), kMoonRadius);
@@ -138,7 +138,7 @@ struct SunSeries::Knots {
 SunSeries::SunSeries(const SceneFrame& frame, Vec3 site) : frame_(frame), site_(site), knots_(new Knots) {}
 SunSeries::~SunSeries() = default;
 
-SkyBody SunSeries::at(Instant instant, double dut1, const Refraction& air) const {
+SkyBody SunSeries::at(Instant instant, double dut1, const SiteAir& air) const {
   check_air(air, dut1);
   const JulianDate tt = julian_tt(instant);
   const double place = Knots::kADay * ((tt.day - ERFA_DJ00) + tt.fraction), first = std::floor(place),

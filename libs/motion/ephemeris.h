@@ -22,8 +22,8 @@ struct SkyBody {
   double elevation = 0;       // rad above the horizon of the place (geodetic vertical)
 };
 
-// What bends light near the ground; pressure 0 = no refraction.
-struct Refraction {
+// The air at a site, which bends light near the ground; pressure 0 = no refraction.
+struct SiteAir {
   double pressure = 0;       // Pa, 0..2e5
   double temperature = 283;  // K, 150..400
 };
@@ -33,8 +33,8 @@ inline constexpr double kSunRadius = 6.957e8, kMoonRadius = 1.7374e6, kAstronomi
 
 // The body as seen from `site` (scene ENU, m) at an instant. dut1: UT1 - UTC in s (0 costs up to 0.004 degree).
 // Error: refraction outside its range, |dut1| > 0.9.
-SkyBody sun_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1 = 0, const Refraction& air = {});
-SkyBody moon_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1 = 0, const Refraction& air = {});
+SkyBody sun_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1 = 0, const SiteAir& air = {});
+SkyBody moon_at(const SceneFrame& frame, Vec3 site, Instant instant, double dut1 = 0, const SiteAir& air = {});
 
 // The sun of many instants over one place, for work on every step of a day or a year: the exact series have thousands
 // of terms. The pole and the sun's place are exact at multiples of three hours of terrestrial time and cubic in
@@ -46,7 +46,7 @@ class SunSeries {
   SunSeries(const SunSeries&) = delete;
   SunSeries& operator=(const SunSeries&) = delete;
   // As sun_at().
-  SkyBody at(Instant instant, double dut1 = 0, const Refraction& air = {}) const;
+  SkyBody at(Instant instant, double dut1 = 0, const SiteAir& air = {}) const;
 
  private:
   struct Knots;
@@ -66,6 +66,6 @@ struct EquatorialPlace {
 EquatorialPlace moon_geocentric(Instant instant);
 
 // Lift of a body by refraction, rad, at its geometric elevation (rad). 0 below -1 degree, where the formula ends.
-double refraction_lift(double elevation, const Refraction& air);
+double refraction_lift(double elevation, const SiteAir& air);
 
 }  // namespace suite

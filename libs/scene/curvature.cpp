@@ -14,7 +14,7 @@ namespace {
 constexpr double kRadius = 6.335e6;  // m, the smallest there is on WGS84
 constexpr size_t kMostPlacements = size_t{1} << 26;
 
-SceneFrame frame_of(const GeodeticOrigin& o) {
+SceneFrame frame_at_origin(const GeodeticOrigin& o) {
   return SceneFrame({o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m});
 }
 
@@ -28,7 +28,8 @@ double rigid_error(const Box3& box, Vec3 anchor) {
 
 class Curver {
  public:
-  Curver(Scene& scene, double tolerance) : scene_(scene), tolerance_(tolerance), frame_(frame_of(scene.origin)) {}
+  Curver(Scene& scene, double tolerance)
+      : scene_(scene), tolerance_(tolerance), frame_(frame_at_origin(scene.origin)) {}
 
   Curved run() {
     boxes();
@@ -242,7 +243,7 @@ Curved curve_scene(Scene& scene, double tolerance_m) {
 
 void set_flat_plane(Scene& scene) {
   if (!scene.curved) return;
-  const auto plane = std::make_shared<const FlatPlane>(FlatPlane{frame_of(scene.origin), {}});
+  const auto plane = std::make_shared<const FlatPlane>(FlatPlane{frame_at_origin(scene.origin), {}});
   for (ClassMap& m : scene.class_maps)
     if (m.projection == Projection::drape) m.drape.plane = plane;
   for (PropertyMap& m : scene.property_maps)

@@ -12,7 +12,7 @@ namespace suite {
 namespace {
 
 constexpr uint64_t kMostLeaves = 1'000'000;
-constexpr size_t kMostBodies = 20'000, kMostPairs = 20'000'000, kMostReported = 64;
+constexpr size_t kMostBodies = 20'000, kMostPairs = 20'000'000, kMostFacesReported = 64;
 constexpr double kNear = 2e-7;   // of the largest coordinate: what rays take for one place
 constexpr double kAlike = 1e-6;  // of directions
 constexpr double kShare = 1e-6;  // of the smaller facet's area, that is more than an edge
@@ -218,7 +218,7 @@ std::vector<SharedFace> shared_faces(const Scene& scene, double time) {
   std::ranges::sort(all, {}, [](const Body& b) { return b.box.low.x; });
   for (size_t i = 0; i < all.size(); ++i)
     for (size_t k = i + 1; k < all.size() && all[k].box.low.x <= all[i].box.high.x; ++k) {
-      if (reported.size() == kMostReported) return reported;
+      if (reported.size() == kMostFacesReported) return reported;
       const bool first = volume(all[i].box) <= volume(all[k].box);
       const Body &one = all[first ? i : k], &other = all[first ? k : i];
       if (one.medium == other.medium || one.medium->priority != other.medium->priority) continue;

@@ -10,9 +10,9 @@ namespace suite {
 namespace {
 
 constexpr double kWidestCell = 0.0005, kWidestCellInWaves = 1;  // um, cm-1
-constexpr double kCellsAcross = 24;                             // of a band
+constexpr double kBinsAcross = 24;                              // of a band
 constexpr double kMostIntervals = 20000;
-constexpr size_t kMostOfABand = 512;  // bins
+constexpr size_t kMostBinsOfABand = 512;  // bins
 
 std::vector<SeenSpectra> both(std::vector<SeenSpectra> a, std::vector<SeenSpectra> b) {
   std::move(b.begin(), b.end(), std::back_inserter(a));
@@ -26,7 +26,7 @@ SpectralState air_cells(std::span<const Band> bands) {
   const auto width_at = [&](double um) {
     double width = std::max(kWidestCell, kWidestCellInWaves * 1e-4 * um * um);
     for (const Band& b : bands)
-      if (um >= b.low_um() && um <= b.high_um()) width = std::min(width, (b.high_um() - b.low_um()) / kCellsAcross);
+      if (um >= b.low_um() && um <= b.high_um()) width = std::min(width, (b.high_um() - b.low_um()) / kBinsAcross);
     return width;
   };
   SpectralState state = make_state(bands, 1e3, 0, 1);
@@ -113,7 +113,7 @@ SpectralState AirChoice::choose(double tolerance) const {
   for (BandCells& band : cells) band.tolerance = 0.7 * tolerance;
   SpectralState best;
   for (int round = 0; round < kRounds; ++round) {
-    best = state_of(choose_cells(products_, cells, tolerance, kMostOfABand));
+    best = state_of(choose_cells(products_, cells, tolerance, kMostBinsOfABand));
     const std::vector<Worst> worst = judge(best);
     bool met = true;
     for (size_t b = 0; b < cells.size(); ++b)

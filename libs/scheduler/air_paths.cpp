@@ -13,7 +13,7 @@ namespace {
 using Row = std::vector<float>;
 using Rows = std::vector<Row>;
 
-constexpr double kMostMass = 10, kHigh = 200e3;
+constexpr double kMostMass = 10, kHighM = 200e3;
 
 double mass_of(double cosine) { return 1 / std::max(std::fabs(cosine), 1 / kMostMass); }
 
@@ -246,7 +246,7 @@ Own own_paths(std::span<const SourceSpecs> sources, const Sensor& sensor, size_t
     for (const Capture& c : task.captures) {
       if (c.state != state || c.problems() == 0) continue;
       const SensorRay ray = middle_ray(sensor, c, (c.rows / 2) * c.columns + c.columns / 2);
-      add_apart(own.heights, std::clamp(ray.ray.origin.z - ground, 10.0, kHigh), kHeights);
+      add_apart(own.heights, std::clamp(ray.ray.origin.z - ground, 10.0, kHighM), kHeights);
       if (ray.receiver == SensorRay::Receiver::none) add_apart(own.views, mass_of(ray.ray.direction.z), kViews);
     }
   return own;
@@ -261,7 +261,7 @@ Paths paths_of(const Own& own, PathSet set) {
   if (own.any_sun)
     add(p.suns, training ? std::initializer_list<double>{1.1, 6} : std::initializer_list<double>{1.8, 4.5}, 3);
   add(p.heights,
-      training ? std::initializer_list<double>{kHigh, 800, 3500} : std::initializer_list<double>{kHigh, 1800}, 4);
+      training ? std::initializer_list<double>{kHighM, 800, 3500} : std::initializer_list<double>{kHighM, 1800}, 4);
   add(p.views, training ? std::initializer_list<double>{1, 4} : std::initializer_list<double>{1.4, 3}, 3);
   return p;
 }
@@ -271,8 +271,8 @@ struct Way {
   double mass, height;
 };
 std::vector<Way> ways_of(const Paths& p) {
-  std::vector<Way> ways{{0, kHigh}, {p.views.front(), p.heights.front()}};
-  for (const double m : p.sky) ways.push_back({m, kHigh});
+  std::vector<Way> ways{{0, kHighM}, {p.views.front(), p.heights.front()}};
+  for (const double m : p.sky) ways.push_back({m, kHighM});
   return ways;
 }
 

@@ -10,8 +10,8 @@ namespace {
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kEarth = 6371e3;  // m
 constexpr int kMostFaces = 12;
-constexpr float kLeast = 1e-6f;  // of a point's light
-constexpr int kLobes = 64;       // draws that find the lobes of a model
+constexpr float kPointSightLeast = 1e-6f;  // of a point's light
+constexpr int kLobes = 64;                 // draws that find the lobes of a model
 
 struct Lobe {
   int number;
@@ -106,7 +106,7 @@ void PointSight::split(const Line& line, const Hit& hit, int knot) {
     model.delta_weight(out, lobe.number, knot, on.weight);
     for (size_t k = 0; k < on.weight.size(); ++k) on.weight[k] *= line.weight[k];
     through_air(line, hit.distance, on.weight);
-    if (*std::max_element(on.weight.begin(), on.weight.end()) > kLeast) follow(on, knot);
+    if (*std::max_element(on.weight.begin(), on.weight.end()) > kPointSightLeast) follow(on, knot);
   }
 }
 

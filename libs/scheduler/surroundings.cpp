@@ -23,7 +23,7 @@ constexpr size_t kObjects = 256;  // of all, the first ones
 constexpr int kMostHits = 64;     // on one of them
 constexpr double kOff = 3;        // where the surroundings are asked for, in steps of rays that leave the surface
 constexpr double kTouching = 16;  // steps within which bodies touch and do not overlap
-constexpr uint64_t kPurpose = 0x77657473;
+constexpr uint64_t kSurroundingsPurpose = 0x77657473;
 
 class Look {
  public:
@@ -103,7 +103,7 @@ class Look {
 
   void shoot(const Box3& box, uint64_t object) {
     for (uint64_t r = 0; r < kRays; ++r) {
-      const auto u = [&](uint64_t i) { return unit_double(hash_of(kPurpose, hash_of(object, r, i))); };
+      const auto u = [&](uint64_t i) { return unit_double(hash_of(kSurroundingsPurpose, hash_of(object, r, i))); };
       const Vec3 size = box.size();
       const double z = 2 * u(3) - 1, s = std::sqrt(1 - z * z), phi = 2 * kPi * u(4);
       const Dir d{s * std::cos(phi), s * std::sin(phi), z};
@@ -123,7 +123,7 @@ class Look {
   // From above all things down to what is opaque: boundaries go on below the ground where they matter to nobody.
   void drop(const Box3& box, uint64_t object) {
     for (uint64_t r = 0; r < kRays; ++r) {
-      const auto u = [&](uint64_t i) { return unit_double(hash_of(kPurpose, hash_of(object, r, i + 8))); };
+      const auto u = [&](uint64_t i) { return unit_double(hash_of(kSurroundingsPurpose, hash_of(object, r, i + 8))); };
       const double phi = 2 * kPi * u(2), top = std::max(box.high.z, tracer_.bounds().high.z);
       const Dir d = normalized(Dir{0.1 * std::cos(phi), 0.1 * std::sin(phi), -1});
       const Vec3 size = box.size(), in{box.low.x + u(0) * size.x, box.low.y + u(1) * size.y, box.high.z};
@@ -224,7 +224,7 @@ class Look {
     };
     std::vector<In> in;
     for (uint64_t r = 0; r < kRays / 4; ++r) {
-      const auto u = [&](uint64_t i) { return unit_double(hash_of(kPurpose, hash_of(object, r, i + 16))); };
+      const auto u = [&](uint64_t i) { return unit_double(hash_of(kSurroundingsPurpose, hash_of(object, r, i + 16))); };
       const Vec3 size = box.size();
       const double z = 2 * u(3) - 1, s = std::sqrt(1 - z * z), phi = 2 * kPi * u(4);
       const Dir d{s * std::cos(phi), s * std::sin(phi), z};

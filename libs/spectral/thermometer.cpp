@@ -9,7 +9,7 @@ namespace suite {
 
 namespace {
 
-constexpr double kLowest = 10, kHighest = 20000, kStep = 1.0 / 64;  // K, K, of ln T
+constexpr double kLowest = 10, kHighest = 20000, kThermometerStep = 1.0 / 64;  // K, K, of ln T
 constexpr double kLeastRadiance = 1e-250;
 constexpr double kWidest = 0.02;  // of a piece, relative to its wavelength
 
@@ -31,7 +31,7 @@ BandThermometer::BandThermometer(const Band& band) {
   }
   if (!(sum > 0)) throw Error("the band '" + band.name + "' responds nowhere");
   for (Node& n : nodes_) n.weight /= sum;
-  const int steps = static_cast<int>(std::ceil(std::log(kHighest / kLowest) / kStep));
+  const int steps = static_cast<int>(std::ceil(std::log(kHighest / kLowest) / kThermometerStep));
   for (int i = 0; i <= steps; ++i) {
     const double kelvin = kLowest * std::pow(kHighest / kLowest, static_cast<double>(i) / steps);
     double mean = 0, steep = 0;

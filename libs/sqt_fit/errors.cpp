@@ -15,8 +15,8 @@ namespace suite::sqt {
 namespace {
 
 constexpr double kLimit = 80 * kDegree;
-constexpr int kRings = 256, kSpokes = 64;  // of half directions, for totals
-constexpr size_t kPoints = 2 * kRings * kSpokes;
+constexpr int kErrorsRings = 256, kSpokes = 64;  // of half directions, for totals
+constexpr size_t kPoints = 2 * kErrorsRings * kSpokes;
 const double kPeakAngles[3] = {20 * kDegree, 45 * kDegree, 70 * kDegree};
 
 // Rings for totals: even in log(s + a), so that narrow lobes (down to 0.01 deg) and wide ones have their share of them.
@@ -121,7 +121,7 @@ std::vector<double> Reference::integrate(const std::function<void(size_t, Dir, D
                                          Dir out) const {
   std::vector<double> f(channels_), W(channels_, 0.0);
   const bool sphere = function_.info().domain == Domain::sphere;
-  const int n_r = kRings, n_phi = kSpokes;
+  const int n_r = kErrorsRings, n_phi = kSpokes;
   for (int side = 0; side < (sphere ? 2 : 1); ++side)
     for (int a = 0; a < n_r; ++a)
       for (int b = 0; b < n_phi; ++b) {

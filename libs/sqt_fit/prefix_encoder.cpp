@@ -10,10 +10,10 @@ namespace suite::sqt {
 
 namespace {
 
-constexpr uint32_t kSymbols = PrefixLengths::kSymbols, kMost = PrefixLengths::kMost;
+constexpr uint32_t kSymbols = PrefixLengths::kSymbols, kBits = PrefixLengths::kMost;
 
-// Lengths of a Huffman code, cut to kMost bits: too long codes are shortened and the code is made to fit again by
-// lengthening the cheapest ones.
+// Lengths of a Huffman code, cut to kBits bits: too long codes are shortened and the code is made to fit
+// again by lengthening the cheapest ones.
 void make_lengths(const std::array<uint32_t, kSymbols>& count, uint8_t* length) {
   struct Tree {
     uint64_t weight;
@@ -47,38 +47,38 @@ void make_lengths(const std::array<uint32_t, kSymbols>& count, uint8_t* length) 
     const auto [i, depth] = down.back();
     down.pop_back();
     if (trees[i].left < 0) {
-      length[-1 - trees[i].left] = static_cast<uint8_t>(std::min(depth, kMost));
+      length[-1 - trees[i].left] = static_cast<uint8_t>(std::min(depth, kBits));
       continue;
     }
     down.push_back({static_cast<size_t>(trees[i].left), depth + 1});
     down.push_back({static_cast<size_t>(trees[i].right), depth + 1});
   }
-  int room = 1 << kMost;  // in codes of the greatest length
+  int room = 1 << kBits;  // in codes of the greatest length
   for (uint32_t s = 0; s < kSymbols; ++s)
-    if (length[s]) room -= 1 << (kMost - length[s]);
+    if (length[s]) room -= 1 << (kBits - length[s]);
   while (room < 0) {
     // The rarest symbol whose code can grow pays least.
     uint32_t best = kSymbols;
     for (uint32_t s = 0; s < kSymbols; ++s)
-      if (length[s] && length[s] < kMost &&
+      if (length[s] && length[s] < kBits &&
           (best == kSymbols || uint64_t{count[s]} << length[s] < uint64_t{count[best]} << length[best]))
         best = s;
-    room += 1 << (kMost - length[best] - 1);
+    room += 1 << (kBits - length[best] - 1);
     ++length[best];
   }
   for (bool grown = true; grown;) {  // hand back what is left over, to the most frequent
     grown = false;
     uint32_t best = kSymbols;
     for (uint32_t s = 0; s < kSymbols; ++s)
-      if (length[s] > 1 && (1 << (kMost - length[s])) <= room && (best == kSymbols || count[s] > count[best])) best = s;
-    if (best < kSymbols) room -= 1 << (kMost - length[best]), --length[best], grown = true;
+      if (length[s] > 1 && (1 << (kBits - length[s])) <= room && (best == kSymbols || count[s] > count[best])) best = s;
+    if (best < kSymbols) room -= 1 << (kBits - length[best]), --length[best], grown = true;
   }
 }
 
 // Canonical codes of one context, first bit lowest.
 void make_codes(const uint8_t* length, uint16_t* code) {
   uint32_t next = 0;
-  for (uint32_t bits = 1; bits <= kMost; ++bits, next <<= 1)
+  for (uint32_t bits = 1; bits <= kBits; ++bits, next <<= 1)
     for (uint32_t s = 0; s < kSymbols; ++s)
       if (length[s] == bits) code[s] = static_cast<uint16_t>(reversed_bits(next++, bits));
 }

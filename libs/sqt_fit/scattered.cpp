@@ -10,7 +10,7 @@ namespace suite::sqt {
 namespace {
 
 constexpr size_t kDimensions = 4, kNeighbours = 8, kView = 2;  // kView: the coordinate of views of isotropic data
-constexpr double kSame = 1e-6;                                 // closer coordinates are of one place
+constexpr double kScatteredSame = 1e-6;                        // closer coordinates are of one place
 using Point = std::array<double, kDimensions>;
 
 // Balanced k-d tree over points, implicit: the middle of every range splits it along the widest side of that range.
@@ -179,7 +179,7 @@ class Scattered final : public Function {
     const size_t channels = info_.wavelength_um.size();
     const auto cell = [](const Sample& sample) {
       std::array<long long, kDimensions> k{};
-      for (size_t d = 0; d < kDimensions; ++d) k[d] = std::llround(sample.at[d] / kSame);
+      for (size_t d = 0; d < kDimensions; ++d) k[d] = std::llround(sample.at[d] / kScatteredSame);
       std::swap(k[0], k[kView]);  // the view first
       return k;
     };
@@ -206,7 +206,7 @@ class Scattered final : public Function {
     std::vector<size_t> ends;
     size_t first = 0;
     for (size_t i = 1; i <= places.size(); ++i) {
-      if (i < places.size() && places[i][kView] - places[i - 1][kView] <= 2 * kSame) continue;
+      if (i < places.size() && places[i][kView] - places[i - 1][kView] <= 2 * kScatteredSame) continue;
       if (!surface() || !info_.isotropic || i - first < kPlacesOfAView) return {places.size()};
       ends.push_back(i), first = i;
     }
@@ -219,7 +219,7 @@ class Scattered final : public Function {
     for (size_t i = 0; i < places.size(); ++i) {
       Point at = places[i];
       points.push_back(at), place.push_back(static_cast<uint32_t>(first + i));
-      if (!surface() || !info_.isotropic || !info_.bilateral || at[1] <= kSame) continue;
+      if (!surface() || !info_.isotropic || !info_.bilateral || at[1] <= kScatteredSame) continue;
       at[1] = -at[1];
       points.push_back(at), place.push_back(static_cast<uint32_t>(first + i));
     }

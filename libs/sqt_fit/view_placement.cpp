@@ -10,7 +10,7 @@ namespace suite::sqt {
 namespace {
 
 constexpr size_t kDense = 61;  // trial angles
-constexpr size_t kRadii = 14, kAzimuths = 7;
+constexpr size_t kRadii = 14, kViewAzimuths = 7;
 
 // log2 f and its share of the scattered power at one view, over fixed points of the divided sphere; share 0 = not
 // valid.
@@ -25,10 +25,10 @@ Look look(const Function& function, LobeFrame frame, double theta) {
   Look l;
   std::vector<double> f(channels);
   for (size_t r = 0; r < kRadii; ++r)
-    for (size_t a = 0; a < kAzimuths; ++a) {
+    for (size_t a = 0; a < kViewAzimuths; ++a) {
       // Rings of polar angle from 0.2 to 80 deg in geometric steps, each standing for the ring around it.
       const double polar = 0.2 * kDegree * std::pow(400.0, static_cast<double>(r) / (kRadii - 1));
-      const Dir d = dir_from_angles(polar, kPi * (static_cast<double>(a) + 0.5) / kAzimuths);
+      const Dir d = dir_from_angles(polar, kPi * (static_cast<double>(a) + 0.5) / kViewAzimuths);
       const double cosine = map.cosine(d);
       double level = 0, share = 0;
       if (cosine > 0.02) {

@@ -12,7 +12,7 @@ namespace suite {
 namespace {
 
 constexpr size_t kMostNodes = 100000;
-constexpr double kColdest = 20, kHottest = 1500;  // K, where the property polynomials must stay positive
+constexpr double kColdest = 20, kHottestSlab = 1500;  // K, where the property polynomials must stay positive
 
 template <size_t N>
 double polynomial(const std::array<double, N>& c, double x) {
@@ -24,10 +24,10 @@ double polynomial(const std::array<double, N>& c, double x) {
 template <size_t N>
 void check_positive(const std::array<double, N>& c, const char* what, const std::string& layer) {
   for (int i = 0; i <= 64; ++i) {
-    const double T = kColdest * std::pow(kHottest / kColdest, i / 64.0), v = polynomial(c, T);
+    const double T = kColdest * std::pow(kHottestSlab / kColdest, i / 64.0), v = polynomial(c, T);
     if (!(v > 0 && std::isfinite(v)))
       throw Error(layer + strf(": the %s is %g at %g K", what, v, T),
-                  strf("it must be positive from %g to %g K", kColdest, kHottest));
+                  strf("it must be positive from %g to %g K", kColdest, kHottestSlab));
   }
 }
 

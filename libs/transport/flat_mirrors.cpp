@@ -6,10 +6,10 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kMostTriangles = 65536, kMostObjects = size_t{1} << 20;
+constexpr size_t kMostMirrorTriangles = 65536, kMostObjects = size_t{1} << 20;
 constexpr double kParallel = 1e-6;  // rad
 
-Vec3 vertex(const Mesh& mesh, const Affine3& place, uint32_t i) {
+Vec3 placed_vertex(const Mesh& mesh, const Affine3& place, uint32_t i) {
   const float* p = &mesh.positions[3 * size_t{i}];
   return place.point(mesh.origin + Vec3{double{p[0]}, double{p[1]}, double{p[2]}});
 }
@@ -56,13 +56,13 @@ bool FlatMirrors::add(const Tracer& tracer, uint32_t number, const TracedObject&
            (add_normal(normalized(place.normal({1, 0, 0}))) && add_normal(normalized(place.normal({0, 1, 0}))));
   }
   const Mesh& mesh = scene.meshes[object.mesh];
-  if (mesh.triangle_count() > kMostTriangles) return false;
+  if (mesh.triangle_count() > kMostMirrorTriangles) return false;
   mesh.require();
   if (!mesh.normals.empty()) return false;
   for (size_t t = 0; t < mesh.triangle_count(); ++t) {
     const uint32_t* i = &mesh.indices[3 * t];
-    const Vec3 a = vertex(mesh, place, i[0]);
-    const Vec3 n = cross(vertex(mesh, place, i[1]) - a, vertex(mesh, place, i[2]) - a);
+    const Vec3 a = placed_vertex(mesh, place, i[0]);
+    const Vec3 n = cross(placed_vertex(mesh, place, i[1]) - a, placed_vertex(mesh, place, i[2]) - a);
     if (length(n) > 0 && !add_normal(normalized(n))) return false;
   }
   return true;

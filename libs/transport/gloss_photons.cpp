@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kWave = 2048;     // photons that are traced side by side
 constexpr size_t kWorthwhile = 8;  // of the first wave; where fewer land no more are sent
 constexpr int kMostTurns = 6;
-constexpr size_t kMostObjects = size_t{1} << 22;
+constexpr size_t kMostGlossyObjects = size_t{1} << 22;
 constexpr size_t kMostGlossy = size_t{1} << 15;  // of more objects too few photons come from each to say anything
 struct Ball {
   Vec3 centre;
@@ -28,7 +28,7 @@ class Sender {
       : surface_(surface), turns_(optics.state()), spectrum_(optics.state().size()), lookup_(surface.tracer().scene()) {
     for (const auto& light : environment.lights)
       if (const LightNature& n = light->nature(); n.drawn && !n.wide) lights_.push_back(light.get());
-    if (lights_.empty() || surface.tracer().object_count() > kMostObjects || !find_glossy(optics)) return;
+    if (lights_.empty() || surface.tracer().object_count() > kMostGlossyObjects || !find_glossy(optics)) return;
     list_balls();
   }
 

@@ -21,6 +21,10 @@ target_compile_features(suite_flags INTERFACE cxx_std_20)
 target_compile_options(suite_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror -Wno-restrict
                                              -ffp-contract=off -march=${SUITE_ARCH})
 target_include_directories(suite_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
+if(CMAKE_UNITY_BUILD)
+  # Types of an unnamed namespace in a header are a fault; g++ takes the sources of a batch for headers.
+  target_compile_options(suite_flags INTERFACE -Wno-subobject-linkage)
+endif()
 if(SUITE_SANITIZE)
   # The instrumentation hides initialisations from g++ 12, whose manual warns of false warnings with sanitizers.
   target_compile_options(suite_flags INTERFACE -fsanitize=${SUITE_SANITIZE} -fno-omit-frame-pointer
@@ -206,7 +210,7 @@ function(suite_entry name)
   set_property(GLOBAL APPEND PROPERTY SUITE_ENTRIES "${name} ${A_LABEL}")
 endfunction()
 
-# Adds a source of tests to a GoogleTest program, which the first source of it makes.
+# Adds a source of tests to a GoogleTest program, which its first source makes.
 function(_suite_test_program program source libraries)
   if(NOT TARGET ${program})
     add_executable(${program})
@@ -220,20 +224,20 @@ function(_suite_test_program program source libraries)
 endfunction()
 
 # suite_test(<library>/<subject> USES ... VENDOR ... [ENVIRONMENT ...]): the tests of <library>/<subject>_test.cpp beside the
-# CMakeLists as one ctest entry. In the folders of SUITE_ONE_PROGRAM a library's tests are one program, <label>_<library>, of
-# which the entry runs one source (test_main's --source); elsewhere a source is a program, of the entry's name.
-set(SUITE_ONE_PROGRAM unit)
-function(_suite_program_of place name label program)
+# CMakeLists as one ctest entry. The tests of a library are one program, <label>_<library>, and those of all formats are
+# <label>_formats; the entry runs one source of it (test_main's --source). Sources of a program are compiled in batches
+# (CMAKE_UNITY_BUILD), for two thirds of a test's compile time are headers: so each has a namespace of its own, named like its file.
+function(_suite_program_of place label program)
   get_filename_component(library ${place} DIRECTORY)
-  set(${program} ${name} PARENT_SCOPE)
-  if(label IN_LIST SUITE_ONE_PROGRAM)
-    set(${program} ${label}_${library} PARENT_SCOPE)
+  if(library MATCHES "^format_")
+    set(library formats)
   endif()
+  set(${program} ${label}_${library} PARENT_SCOPE)
 endfunction()
 function(suite_test place)
   cmake_parse_arguments(A "" "" "USES;VENDOR;ENVIRONMENT" ${ARGN})
   _suite_test_name(${place} name label)
-  _suite_program_of(${place} ${name} ${label} program)
+  _suite_program_of(${place} ${label} program)
   _suite_test_program(${program} ${place}_test.cpp "${A_USES};${A_VENDOR}")
   suite_entry(${name} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
   if("${name}" IN_LIST SUITE_QUICK)
@@ -245,7 +249,7 @@ endfunction()
 function(suite_test_long place)
   cmake_parse_arguments(A "" "SECONDS" "ENVIRONMENT" ${ARGN})
   _suite_test_name(${place} name label)
-  _suite_program_of(${place} ${name} ${label} program)
+  _suite_program_of(${place} ${label} program)
   suite_entry(${name}_long LABEL long TIMEOUT ${A_SECONDS} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp
               ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
 endfunction()

@@ -153,7 +153,7 @@ std::vector<test::StokesSeen> below_molecules(double depth, const Ray& ray, uint
   return test::see_stokes(scene, sources, std::vector<Ray>(rays, ray), paths, how);
 }
 // The degree in the frame of the plane of the sun beside that in the meridian frame, near the sun.
-double off_towards_sun(double away) {
+double off_in_the_plane_of_the_sun(double away) {
   const Ray up{{0.1, 0.2, -1}, dir_from_angles(60 * kDegree + away, 0.6), 0};
   const auto one = below_molecules(0.5, up, 64, 1, StokesFrame::scattering_plane),
              other = below_molecules(0.5, up, 64, 1, StokesFrame::meridian);
@@ -193,7 +193,7 @@ std::vector<Case> polarisation_cases() {
       row("a facet that sends light back", "a mirror's matrix, 4 times the angle off", 1e-12, off_retro,
           {"angle from straight back", "rad", 0.1, 1e-16, 10}),
       row("polarised light on a matte surface", "0", 0, off_matte, {"degree of polarisation", "1", 1e-3, 1, 10}),
-      row("degree in the plane of a sun near the view", "that in the meridian frame", 1e-6, off_towards_sun,
+      row("degree in the plane of a sun near the view", "that in the meridian frame", 1e-6, off_in_the_plane_of_the_sun,
           {"angle from the sun", "rad", 0.1, 1e-16, 10}),
   };
 }

@@ -27,9 +27,9 @@ inline TemperatureSpec heat_of(std::vector<SlabLayer> layers, std::map<std::stri
 }
 
 // A scene made ready for its balance; material i waits for temperature i.
-class HeatedScene {
+class BalancedScene {
  public:
-  HeatedScene(std::vector<Mesh> meshes, std::vector<Material> materials, std::vector<TemperatureSpec> temperatures,
+  BalancedScene(std::vector<Mesh> meshes, std::vector<Material> materials, std::vector<TemperatureSpec> temperatures,
               const HeatSpec& spec) {
     auto made = scene_of(std::move(meshes), std::move(materials));
     for (uint32_t m = 0; m < temperatures.size(); ++m) made->temperatures.push_back({m, std::move(temperatures[m])});

@@ -41,8 +41,7 @@ class SunLight final : public BodySpec {
 
   LightSpecPtr standing(double zenith) const override {
     if (!disk_.time) return nullptr;
-    SunSpec still = disk_;
-    still.time.reset();
+    SunSpec still{FarDisk(disk_), std::nullopt, disk_.disk_by_time, disk_.at_1_au};
     still.direction = dir_from_angles(zenith, 0);
     return make_light(std::move(still));
   }

@@ -16,8 +16,8 @@ constexpr double kLongitude[] = {0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 60, 75, 9
 constexpr double kTable[] = {
 #include "light/night/zodiacal.inc"
 };
-constexpr size_t kRows = std::size(kLongitude), kColumns = std::size(kLatitude);
-static_assert(std::size(kTable) == kRows * kColumns);
+constexpr size_t kZodiacalRows = std::size(kLongitude), kZodiacalColumns = std::size(kLatitude);
+static_assert(std::size(kTable) == kZodiacalRows * kZodiacalColumns);
 constexpr double kPower = 2.1, kNearest = 2.5;  // degrees from the Sun, within which it is even
 
 double elongation_deg(double longitude_deg, double latitude_deg) {
@@ -25,16 +25,16 @@ double elongation_deg(double longitude_deg, double latitude_deg) {
 }
 
 // Logarithms, with what is not given from the first value of the same latitude that is.
-std::array<double, kRows * kColumns> logarithms() {
-  std::array<double, kRows * kColumns> logs{};
-  for (size_t c = 0; c < kColumns; ++c) {
+std::array<double, kZodiacalRows * kZodiacalColumns> logarithms() {
+  std::array<double, kZodiacalRows * kZodiacalColumns> logs{};
+  for (size_t c = 0; c < kZodiacalColumns; ++c) {
     size_t first = 0;
-    while (kTable[first * kColumns + c] == 0) ++first;
+    while (kTable[first * kZodiacalColumns + c] == 0) ++first;
     const double from = elongation_deg(kLongitude[first], kLatitude[c]);
-    for (size_t r = 0; r < kRows; ++r) {
-      const double given = kTable[std::max(r, first) * kColumns + c],
+    for (size_t r = 0; r < kZodiacalRows; ++r) {
+      const double given = kTable[std::max(r, first) * kZodiacalColumns + c],
                    e = std::max(kNearest, elongation_deg(kLongitude[r], kLatitude[c]));
-      logs[r * kColumns + c] = std::log(given) + (r < first ? kPower * std::log(from / e) : 0);
+      logs[r * kZodiacalColumns + c] = std::log(given) + (r < first ? kPower * std::log(from / e) : 0);
     }
   }
   return logs;
@@ -64,12 +64,12 @@ GlowSpectrum sunlight(const Factor& factor) {
 }  // namespace
 
 double zodiacal_s10(double longitude_from_sun, double latitude) {
-  static const std::array<double, kRows* kColumns> kLogs = logarithms();
+  static const std::array<double, kZodiacalRows* kZodiacalColumns> kLogs = logarithms();
   double turn = std::fabs(std::remainder(longitude_from_sun, 2 * kPi)) / kDegree;
   turn = std::min(turn, 180.0);
   const auto [r, v] = place_in(kLongitude, turn);
   const auto [c, u] = place_in(kLatitude, std::min(90.0, std::fabs(latitude) / kDegree));
-  const double *low = &kLogs[r * kColumns + c], *high = low + kColumns;
+  const double *low = &kLogs[r * kZodiacalColumns + c], *high = low + kZodiacalColumns;
   return std::exp((1 - v) * ((1 - u) * low[0] + u * low[1]) + v * ((1 - u) * high[0] + u * high[1]));
 }
 

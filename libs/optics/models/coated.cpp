@@ -150,7 +150,7 @@ class Coated final : public ScatterModel {
   bool uniform_ = false, opaque_ = true;
 };
 
-std::vector<ModelSpec> examples() {
+std::vector<ModelSpec> coated_examples() {
   const Curve green({0.4, 0.55, 0.65, 0.8, 2.0}, {0.05, 0.12, 0.05, 0.48, 0.2}, Outside::hold);
   const Curve through({0.4, 0.55, 0.65, 0.8, 2.0}, {0.01, 0.1, 0.02, 0.46, 0.25}, Outside::hold);
   return {{"coated",
@@ -176,7 +176,7 @@ ModelRow coated_row() {
            {"transmittance", P::Kind::curve, "1", "share of what has entered that leaves on the other side", 0, 1,
             false, 0}},
           true,
-          examples};
+          coated_examples};
 }
 
 }  // namespace suite

@@ -44,7 +44,7 @@ class GgxConductor final : public ScatterModel {
   FacetMirror<Ggx> mirror_;
 };
 
-std::vector<ModelSpec> examples() {
+std::vector<ModelSpec> ggx_examples() {
   // Aluminium-like and gold-like (after Rakic 1998), coarse.
   const Curve n({0.4, 0.6, 0.8, 1.0, 2.0}, {0.49, 1.2, 2.7, 1.35, 2.2}, Outside::hold);
   const Curve k({0.4, 0.6, 0.8, 1.0, 2.0}, {4.86, 7.26, 8.3, 9.6, 20.8}, Outside::hold);
@@ -71,7 +71,7 @@ ModelRow ggx_row() {
            {"roughness", P::Kind::number, "1", "GGX alpha (along x when anisotropic)", 1e-4, 1},
            {"roughness_y", P::Kind::number, "1", "GGX alpha along y; 0 = as along x", 0, 1, false, 0}},
           true,
-          examples};
+          ggx_examples};
 }
 
 }  // namespace suite

@@ -12,7 +12,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kPoints = 8192, kWalks = 1024;
+constexpr size_t kPoints = 8192, kWalksThroughInterface = 1024;
 // Rows of the upper side, even in the root of the cosine; of the lower side before the critical angle, even in the root
 // of the cosine of the refracted direction; and beyond it, dense at both ends.
 constexpr double kUpper = 128, kRefracted = 96, kTotal = 96;
@@ -101,7 +101,7 @@ RoughInterface::Row RoughInterface::make_row(int side, double mu, size_t number)
 
 void RoughInterface::walk(int side, Dir out, uint64_t seed, Row& row) const {
   Pcg32 random(seed, 0x726f7567);
-  for (size_t n = 0; n < kWalks; ++n) {
+  for (size_t n = 0; n < kWalksThroughInterface; ++n) {
     MicrosurfaceWalk light(facets_, out);
     int met = 0, passed = 0;
     for (; met < kMostFacets; ++met) {
@@ -116,9 +116,9 @@ void RoughInterface::walk(int side, Dir out, uint64_t seed, Row& row) const {
         light.refract(*h, eta, f.cos_transmitted), ++passed;
     }
     if (met < 2) continue;
-    row.again += 1.0 / kWalks;
-    if (passed % 2 == 0) row.again_reflected += 1.0 / kWalks;
-    if (passed == met && passed % 2 == 1) row.refracted_only += 1.0 / kWalks;
+    row.again += 1.0 / kWalksThroughInterface;
+    if (passed % 2 == 0) row.again_reflected += 1.0 / kWalksThroughInterface;
+    if (passed == met && passed % 2 == 1) row.refracted_only += 1.0 / kWalksThroughInterface;
   }
 }
 

@@ -11,9 +11,9 @@ namespace suite {
 
 namespace {
 
-struct Kernels {
+struct RoujeanKernels {
   double volume, geometry;
-  Kernels(Dir o, Dir i) {
+  RoujeanKernels(Dir o, Dir i) {
     const double to = std::hypot(o.x, o.y) / o.z, ti = std::hypot(i.x, i.y) / i.z;
     // Relative azimuth, 0 towards the light: the hot spot.
     const double phi = to > 0 && ti > 0 ? std::fabs(std::atan2(o.x * i.y - o.y * i.x, o.x * i.x + o.y * i.y)) : 0;
@@ -24,7 +24,7 @@ struct Kernels {
   }
 };
 
-class Roujean final : public KernelGround<Kernels> {
+class Roujean final : public KernelGround<RoujeanKernels> {
  public:
   Roujean(const ModelSpec& spec, const SpectralState& state) : KernelGround("roujean", spec, state) {}
 };

@@ -95,7 +95,7 @@ class Ward final : public ScatterModel {
   bool uniform_;
 };
 
-std::vector<ModelSpec> examples() {
+std::vector<ModelSpec> ward_examples() {
   const Curve falling({0.3, 1.0, 2.6}, {0.3, 0.1, 0.05}, Outside::hold),
       rising({0.3, 1.0, 2.6}, {0.1, 0.4, 0.6}, Outside::hold);
   auto ward = [](double rough, double rough_y, Curve diffuse, Curve specular) {
@@ -121,7 +121,7 @@ ModelRow ward_row() {
            {"roughness", P::Kind::number, "1", "standard roughness alpha (along x when anisotropic)", 1e-4, 1},
            {"roughness_y", P::Kind::number, "1", "roughness along y; 0 = as along x", 0, 1, false, 0}},
           true,
-          examples};
+          ward_examples};
 }
 
 }  // namespace suite

@@ -24,7 +24,7 @@ struct SpadKeys {
 };
 
 constexpr double kManyCounts = 4096;
-constexpr double kGrace = 0.5;  // s, that a read-out may take to its end when a signal came
+constexpr double kSpadGrace = 0.5;  // s, that a read-out may take to its end when a signal came
 
 class Spad final : public ArrayDetector {
  public:
@@ -83,7 +83,7 @@ class Spad final : public ArrayDetector {
     std::vector<uint8_t> fired(light.size());
     std::vector<size_t> waiting;
     for (uint32_t f = 0; f < keys_.frames; ++f) {
-      stop_point(kGrace);
+      stop_point(kSpadGrace);
       Pcg32 random(hash_of(d_.seed, kNoiseStream, f), hash_of(light.array, light.read_out, light.sites[0].number));
       for (size_t i = 0; i < light.size(); ++i)
         if ((fired[i] = !blind[i] && random.uniform() < click[i])) waiting.push_back(i);

@@ -17,7 +17,7 @@ class HeatModel final : public TemperatureModel {
   bool needs_loads() const override { return true; }
 };
 
-std::vector<TemperatureSpec> examples() { return {}; }
+std::vector<TemperatureSpec> heat_examples() { return {}; }
 
 }  // namespace
 
@@ -51,7 +51,7 @@ TemperatureRow heat_temperature_row() {
         NAN}},
       false,
       true,
-      examples};
+      heat_examples};
 }
 
 }  // namespace suite

@@ -8,14 +8,14 @@
 namespace suite {
 
 namespace {
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kNoBorder = std::numeric_limits<double>::infinity();
 constexpr size_t kTemperatures = 256;
 constexpr uint32_t kMostCells = 100000;  // of a periodic scene; a ray through more runs level and sees no grids then
 }  // namespace
 
 VolumeField::VolumeField(const Scene& scene, const SpectralState& state, const std::optional<Periodic>& periodic)
-    : scene_(scene), periodic_(periodic), bottom_(kForever), top_(-kForever), bins_(state.size()) {
-  double coldest = kForever, hottest = 0;
+    : scene_(scene), periodic_(periodic), bottom_(kNoBorder), top_(-kNoBorder), bins_(state.size()) {
+  double coldest = kNoBorder, hottest = 0;
   for (const Volume& v : scene.volumes) {
     const VoxelGrid& g = scene.grids[v.grid];
     PlacedGrid p{&g, v.to_world * g.to_local};
@@ -110,7 +110,7 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
     grids_end_ = std::min(grids_end_, std::max(below / direction.z, above / direction.z));
   }
   if (!(grids_begin_ < grids_end_)) grids_begin_ = grids_end_ = length;
-  if (grids_begin_ == kForever) return;
+  if (grids_begin_ == kNoBorder) return;
   const Vec3 at = origin + direction * grids_begin_;
   const Periodic& p = *field.periodic();
   cell_[0] = std::floor((at.x - p.low.x) / p.size.x);
@@ -120,7 +120,7 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
 void FieldWalk::enter_zone() {
   const bool in_air = zone_ < zones_.size();
   layer_ = in_air ? zones_[zone_].layer : kNone;
-  zone_end_ = in_air ? zones_[zone_].end : kForever;
+  zone_end_ = in_air ? zones_[zone_].end : kNoBorder;
 }
 
 // The next piece of a ray through a periodic scene: what lies before and behind the grids, or the way through one cell.
@@ -198,10 +198,10 @@ double FieldWalk::pass(double most) {
 void FieldWalk::add_depths(std::span<double> depth) {
   if (!zones_.empty()) {
     while (next())
-      for (const Constituent& c : contents_) depth[c.medium] += c.density * (std::min(end_, kEndless) - begin_);
+      for (const Constituent& c : contents_) depth[c.medium] += c.density * (std::min(end_, kEndlessWay) - begin_);
     return;
   }
-  if (background_ != kNone) depth[background_] += std::min(length_, kEndless);
+  if (background_ != kNone) depth[background_] += std::min(length_, kEndlessWay);
   for (;;) {
     for (GridWalk& g : met()) g.add_depths(depth);
     if (piece_end_ >= length_) return;

@@ -73,7 +73,7 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
     } else if (rate > 0) {
       left -= rate * way;
     }
-    way = std::min(way, kEndless);
+    way = std::min(way, kEndlessWay);
     if (!same_run()) {
       end_run(live, u.y, emitted);
       begin_run(live);

@@ -10,7 +10,7 @@
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::hostile_input_test {
 namespace {
 
 using testing::HasSubstr;
@@ -250,4 +250,4 @@ TEST_F(Hostile, ASignalKeepsWhatIsDoneAndResumeGoesOnFromIt) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::hostile_input_test

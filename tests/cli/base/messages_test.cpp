@@ -6,7 +6,7 @@
 #include "base/files.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::messages_test {
 namespace {
 
 using testing::HasSubstr;
@@ -343,4 +343,4 @@ TEST_F(Messages, QuietKeepsWarningsAndResults) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::messages_test

@@ -6,7 +6,7 @@
 #include "base/files.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::output_folders_test {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST_F(OutputFolders, AreNotMadeForBadInput) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::output_folders_test

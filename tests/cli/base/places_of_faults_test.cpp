@@ -9,7 +9,7 @@
 #include "base/files.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::places_of_faults_test {
 namespace {
 
 using testing::HasSubstr;
@@ -251,4 +251,4 @@ TEST_F(PlacesOfFaults, OfMissingKeys) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::places_of_faults_test

@@ -5,7 +5,7 @@
 #include "base/version.h"
 #include "support/run_command.h"
 
-using namespace suite;
+namespace suite::run_app_test {
 using testing::HasSubstr;
 using testing::Not;
 
@@ -163,3 +163,5 @@ TEST(RunApp, ControlCharactersOfArgumentsAreShown) {
   EXPECT_THAT(r.err, HasSubstr("error: a\\x1b[31mb\n"));
   EXPECT_EQ(r.err.find('\x1b'), std::string::npos);
 }
+
+}  // namespace suite::run_app_test

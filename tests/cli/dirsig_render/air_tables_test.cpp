@@ -9,7 +9,7 @@
 #include "support/programs_kit.h"
 #include "support/tape7_kit.h"
 
-namespace suite {
+namespace suite::air_tables_test {
 namespace {
 
 using test::MadeRow;
@@ -176,4 +176,4 @@ TEST_F(AirTablesOfOthers, HorizontalPathsStayLevel) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_tables_test

@@ -13,7 +13,7 @@
 #include "spectral/state.h"
 #include "support/run_command.h"
 
-using namespace suite;
+namespace suite::calibration_range_test {
 using testing::HasSubstr;
 
 namespace {
@@ -181,3 +181,5 @@ TEST_F(CalibrationRange, FaultsAreOneLocatedMessageAndLeaveNothingBehind) {
   }
   EXPECT_FALSE(std::filesystem::exists(path("bad")));
 }
+
+}  // namespace suite::calibration_range_test

@@ -10,7 +10,7 @@
 #include "formats/raster/raster_write.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::city_lights_test {
 namespace {
 
 using testing::AllOf;
@@ -120,4 +120,4 @@ TEST_F(CityLights, AirBesideTheGlowOfCitiesIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::city_lights_test

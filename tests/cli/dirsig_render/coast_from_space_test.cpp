@@ -7,7 +7,7 @@
 #include "spectral/curve.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::coast_from_space_test {
 namespace {
 
 class CoastFromSpace : public SampleScene {
@@ -131,4 +131,4 @@ TEST_F(CoastFromSpace, HasAirThatIsTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::coast_from_space_test

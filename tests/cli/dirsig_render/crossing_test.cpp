@@ -13,7 +13,7 @@
 #include "study/compare.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::crossing_test {
 namespace {
 
 struct Record {
@@ -222,4 +222,4 @@ TEST_F(Crossing, IntervalsAtNightHoldALongRun) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::crossing_test

@@ -13,7 +13,7 @@
 #include "support/response_kit.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::detect_test {
 namespace {
 
 using testing::HasSubstr;
@@ -156,4 +156,4 @@ TEST_F(Detect, ReadByLaspy) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::detect_test

@@ -10,7 +10,7 @@
 #include "spectral/planck.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::dirsig_test {
 
 namespace {
 
@@ -180,4 +180,4 @@ TEST_F(Dirsig, AScenesReportPointsIntoItsFiles) {
 
 }  // namespace
 
-}  // namespace suite
+}  // namespace suite::dirsig_test

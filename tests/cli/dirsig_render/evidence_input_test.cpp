@@ -6,7 +6,7 @@
 #include "base/files.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::evidence_input_test {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST_F(Evidence, TablesThatDoNotReachTheTimeAsked) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::evidence_input_test

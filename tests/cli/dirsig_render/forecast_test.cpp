@@ -8,7 +8,7 @@
 #include "support/driving_car.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::forecast_test {
 namespace {
 
 using testing::HasSubstr;
@@ -95,4 +95,4 @@ TEST_F(Forecast, BadUsageIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::forecast_test

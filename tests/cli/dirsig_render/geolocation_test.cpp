@@ -12,7 +12,7 @@
 #include "motion/scene_frame.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::geolocation_test {
 namespace {
 
 using testing::HasSubstr;
@@ -255,4 +255,4 @@ TEST_F(Geolocation, TooFineAGridIsTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::geolocation_test

@@ -10,7 +10,7 @@
 #include "math/vec.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::goniometer_test {
 namespace {
 
 // White ground with black fins, a metre apart and half a metre high, that run to the north or to the east.
@@ -93,4 +93,4 @@ TEST_F(Goniometer, SidesMustFitTheAzimuths) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::goniometer_test

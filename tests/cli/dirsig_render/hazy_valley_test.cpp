@@ -4,7 +4,7 @@
 
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::hazy_valley_test {
 namespace {
 
 class HazyValley : public SampleScene {
@@ -72,4 +72,4 @@ TEST_F(HazyValley, PathRadianceIsRefusedAmongMedia) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::hazy_valley_test

@@ -10,7 +10,7 @@
 #include "base/files.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::heat_operator_test {
 namespace {
 
 using testing::HasSubstr;
@@ -223,4 +223,4 @@ TEST_F(HeatOperatorRun, OneRankFindsForAll) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::heat_operator_test

@@ -7,7 +7,7 @@
 #include "base/files.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::heated_walls_test {
 namespace {
 
 using testing::ContainsRegex;
@@ -111,4 +111,4 @@ TEST_F(HeatedWalls, SpansOverMidnightAreToldWithTheirCure) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::heated_walls_test

@@ -12,7 +12,7 @@
 #include "spectral/thermometer.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::image_facts_test {
 namespace {
 
 using testing::ElementsAre;
@@ -268,4 +268,4 @@ TEST_F(ImageFacts, WhatCannotBeHadIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::image_facts_test

@@ -12,7 +12,7 @@
 #include "formats/envi/envi.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::landsat_like_test {
 namespace {
 
 // The design of sample_scenes/landsat_like/make_inputs.py.
@@ -163,4 +163,4 @@ TEST(LandsatLike, ParallaxAndStaggerSeenInTheImagesAreThoseOfTheRelief) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::landsat_like_test

@@ -13,7 +13,7 @@
 #include "scene/issues.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::lidar_test {
 namespace {
 
 using testing::HasSubstr;
@@ -299,4 +299,4 @@ TEST_F(Lidar, Survey) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lidar_test

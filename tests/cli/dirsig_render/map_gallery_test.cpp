@@ -11,7 +11,7 @@
 #include "spectral/planck.h"
 #include "support/run_command.h"
 
-using namespace suite;
+namespace suite::map_gallery_test {
 using testing::HasSubstr;
 
 namespace {
@@ -181,3 +181,5 @@ TEST_F(MapGallery, OnlyWhatTheSensorsSeeIsLoaded) {
   EXPECT_THAT(run("dirsig-render --explain temperatures").out, HasSubstr("1e-9 W/(m2 sr um)"));
   EXPECT_EQ(run("scene-prep --explain temperture").code, 1);
 }
+
+}  // namespace suite::map_gallery_test

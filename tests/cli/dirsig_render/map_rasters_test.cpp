@@ -12,7 +12,7 @@
 #include "motion/scene_frame.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::map_rasters_test {
 namespace {
 
 using testing::HasSubstr;
@@ -222,4 +222,4 @@ TEST_F(MapRasters, WrongKeysAreRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::map_rasters_test

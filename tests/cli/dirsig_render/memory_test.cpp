@@ -5,7 +5,7 @@
 #include "support/driving_car.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::memory_test {
 namespace {
 
 using testing::HasSubstr;
@@ -56,4 +56,4 @@ TEST_F(Memory, BadValuesAreRefusedAndTheForecastIsTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::memory_test

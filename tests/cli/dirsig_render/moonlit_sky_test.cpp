@@ -11,7 +11,7 @@
 #include "math/vec.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::moonlit_sky_test {
 namespace {
 
 constexpr double kExtinction = 0.172;  // mag of V per air mass
@@ -95,4 +95,4 @@ TEST_F(MoonlitSky, IsThatOfKrisciunasAndSchaefer) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::moonlit_sky_test

@@ -7,7 +7,7 @@
 #include "formats/envi/envi.h"
 #include "support/run_command.h"
 
-using namespace suite;
+namespace suite::moving_scene_test {
 using testing::HasSubstr;
 
 namespace {
@@ -108,3 +108,5 @@ TEST_F(MovingScene, FaultsAreToldBeforeRendering) {
 }
 
 }  // namespace
+
+}  // namespace suite::moving_scene_test

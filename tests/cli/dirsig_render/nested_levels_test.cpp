@@ -12,7 +12,7 @@
 #include "formats/envi/envi.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::nested_levels_test {
 namespace {
 
 using testing::HasSubstr;
@@ -110,4 +110,4 @@ TEST_F(NestedLevels, MoreThanCanBeNumberedAreRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::nested_levels_test

@@ -3,7 +3,7 @@
 
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::night_limb_test {
 namespace {
 
 class NightLimb : public SampleScene {
@@ -30,4 +30,4 @@ TEST_F(NightLimb, ShowsWhatIsExpected) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::night_limb_test

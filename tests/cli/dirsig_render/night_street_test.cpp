@@ -15,7 +15,7 @@
 #include "spectral/state.h"
 #include "support/run_command.h"
 
-using namespace suite;
+namespace suite::night_street_test {
 using testing::HasSubstr;
 
 namespace {
@@ -117,3 +117,5 @@ TEST_F(NightStreet, ListsTheKindsOfSources) {
 }
 
 }  // namespace
+
+}  // namespace suite::night_street_test

@@ -5,7 +5,7 @@
 #include "spectral/planck.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::night_window_test {
 namespace {
 
 constexpr size_t kBands = 4;
@@ -71,4 +71,4 @@ TEST_F(NightWindow, ShowsWhatIsExpected) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::night_window_test

@@ -14,7 +14,7 @@
 #include "math/vec.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::orbit_pass_test {
 namespace {
 
 constexpr double kA = 6378137, kF = 1 / 298.257223563, kB = kA * (1 - kF), kEarth = 174, kRate = 7.29211514670698e-5;
@@ -133,4 +133,4 @@ TEST(OrbitPass, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::orbit_pass_test

@@ -12,7 +12,7 @@
 #include "support/driving_car.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::parts_test {
 namespace {
 
 using testing::HasSubstr;
@@ -182,4 +182,4 @@ TEST_F(Parts, are_forecast) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::parts_test

@@ -9,7 +9,7 @@
 #include "support/platform_text.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::platform_input_test {
 namespace {
 
 using testing::HasSubstr;
@@ -204,4 +204,4 @@ TEST_F(PlatformInput, EveryBrokenOneIsRefusedInItsPlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::platform_input_test

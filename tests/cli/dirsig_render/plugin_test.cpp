@@ -13,7 +13,7 @@
 #include "spectral/state.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::plugin_test {
 namespace {
 
 using testing::HasSubstr;
@@ -291,4 +291,4 @@ TEST_F(Plugin, BadRaysAndExceptionsAreContained) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::plugin_test

@@ -12,7 +12,7 @@
 #include "math/vec.h"
 #include "support/run_command.h"
 
-using namespace suite;
+namespace suite::plume_test {
 using testing::HasSubstr;
 
 namespace {
@@ -141,3 +141,5 @@ TEST_F(Plume, FaultsOfMedia) {
 }
 
 }  // namespace
+
+}  // namespace suite::plume_test

@@ -8,7 +8,7 @@
 #include "spectral/planck.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::polar_crater_test {
 namespace {
 
 constexpr int kPictures = 8, kSide = 40;
@@ -76,4 +76,4 @@ TEST_F(PolarCrater, ASkinOfDustLosesItsSun) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::polar_crater_test

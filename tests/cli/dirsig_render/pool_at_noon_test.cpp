@@ -5,7 +5,7 @@
 #include "math/stats.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::pool_at_noon_test {
 namespace {
 
 class PoolAtNoon : public SampleScene {
@@ -39,4 +39,4 @@ TEST_F(PoolAtNoon, WavesMoveTheLightAndKeepIt) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::pool_at_noon_test

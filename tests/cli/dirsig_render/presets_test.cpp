@@ -12,7 +12,7 @@
 #include "math/vec.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::presets_test {
 namespace {
 
 using testing::HasSubstr;
@@ -102,4 +102,4 @@ TEST_F(Presets, DayNightBandCountsElectrons) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::presets_test

@@ -9,7 +9,7 @@
 #include "formats/raster/raster.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::preview_test {
 namespace {
 
 using testing::HasSubstr;
@@ -168,4 +168,4 @@ TEST_F(PreviewTest, StylesShowWhatThePreviewShows) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::preview_test

@@ -12,7 +12,7 @@
 #include "support/driving_car.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::ranks_test {
 namespace {
 
 using testing::AllOf;
@@ -240,4 +240,4 @@ TEST_F(Ranks, are_killed_and_the_run_goes_on) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::ranks_test

@@ -15,7 +15,7 @@
 #include "support/programs_kit.h"
 #include "support/tape7_kit.h"
 
-namespace suite {
+namespace suite::renamed_test {
 namespace {
 
 using testing::HasSubstr;
@@ -289,4 +289,4 @@ TEST_F(Renamed, TheTableIsWhole) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::renamed_test

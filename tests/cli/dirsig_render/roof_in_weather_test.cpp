@@ -9,7 +9,7 @@
 #include "formats/raster/raster.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::roof_in_weather_test {
 namespace {
 
 using testing::HasSubstr;
@@ -166,4 +166,4 @@ TEST_F(RoofInWeather, WhatDoesNotMatterIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::roof_in_weather_test

@@ -9,7 +9,7 @@
 #include "support/sample_kit.h"
 #include "water/water.h"
 
-namespace suite {
+namespace suite::secchi_disk_test {
 namespace {
 
 struct Value {
@@ -74,4 +74,4 @@ TEST_F(SecchiDisk, ContrastFallsAsTheorySays) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::secchi_disk_test

@@ -14,7 +14,7 @@
 #include "sensor/detectors/detectors.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::sensor_output_test {
 namespace {
 
 using testing::HasSubstr;
@@ -379,4 +379,4 @@ TEST_F(SensorOutput, TerrainIsAsOpenAsItsWallsLeaveIt) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sensor_output_test

@@ -9,7 +9,7 @@
 #include "formats/envi/envi.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::sensor_scenes_test {
 namespace {
 
 const std::string kSamples = SUITE_SOURCE_DIR "/sample_scenes/";
@@ -96,4 +96,4 @@ TEST(SampleScenes, OneAFeature) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sensor_scenes_test

@@ -4,7 +4,7 @@
 #include "math/stats.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::shallow_bay_test {
 namespace {
 
 constexpr size_t kBands = 8, kGreen = 2, kNir = 6;
@@ -57,4 +57,4 @@ TEST_F(ShallowBay, GlitterIsOnTheSideOfTheSun) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::shallow_bay_test

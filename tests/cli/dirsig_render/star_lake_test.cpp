@@ -6,7 +6,7 @@
 #include "base/files.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::star_lake_test {
 namespace {
 
 class StarLake : public SampleScene {
@@ -50,4 +50,4 @@ TEST_F(StarLake, WaterMirrorsStars) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::star_lake_test

@@ -7,7 +7,7 @@
 #include "base/files.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::starlit_valley_test {
 namespace {
 
 class StarlitValley : public SampleScene {
@@ -49,4 +49,4 @@ TEST_F(StarlitValley, ShowsWhatIsExpected) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::starlit_valley_test

@@ -10,7 +10,7 @@
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 
-namespace suite::test {
+namespace suite::test::study_test {
 namespace {
 
 const std::string kBin = SUITE_BIN_DIR "/";
@@ -140,4 +140,4 @@ TEST(Page, FromATable) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::study_test

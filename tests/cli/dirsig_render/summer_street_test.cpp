@@ -11,7 +11,7 @@
 #include "formats/envi/envi.h"
 #include "support/run_command.h"
 
-using namespace suite;
+namespace suite::summer_street_test {
 using testing::HasSubstr;
 
 namespace {
@@ -157,3 +157,5 @@ TEST_F(SummerStreet, LightOfTheDayNeedsNoTemperatures) {
 }
 
 }  // namespace
+
+}  // namespace suite::summer_street_test

@@ -8,7 +8,7 @@
 #include "formats/envi/envi.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::time_goes_on_test {
 namespace {
 
 using testing::HasSubstr;
@@ -144,4 +144,4 @@ TEST_F(TimeGoesOn, CapturesInWhichTheSunMovesAreTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::time_goes_on_test

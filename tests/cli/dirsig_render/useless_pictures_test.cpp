@@ -7,7 +7,7 @@
 #include "base/files.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::useless_pictures_test {
 namespace {
 
 using testing::HasSubstr;
@@ -199,4 +199,4 @@ TEST_F(UselessPictures, DryRunsRefuseWhatRunsRefuse) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::useless_pictures_test

@@ -10,7 +10,7 @@
 #include "support/run_command.h"
 #include "thermal/models.h"
 
-using namespace suite;
+namespace suite::warm_roof_test {
 using testing::HasSubstr;
 
 namespace {
@@ -135,3 +135,5 @@ TEST_F(Haze, FittedPhaseFunctionToThePicture) {
 }
 
 }  // namespace
+
+}  // namespace suite::warm_roof_test

@@ -11,7 +11,7 @@
 #include "support/even_within.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::water_output_test {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST_F(WaterOutput, WhatCannotBeHadIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::water_output_test

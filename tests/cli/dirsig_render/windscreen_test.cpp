@@ -4,7 +4,7 @@
 #include "math/stats.h"
 #include "support/sample_kit.h"
 
-namespace suite {
+namespace suite::windscreen_test {
 namespace {
 
 class Windscreen : public SampleScene {
@@ -40,4 +40,4 @@ TEST_F(Windscreen, IsClearInTheVisibleAndWarmInTheInfrared) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::windscreen_test

@@ -11,7 +11,7 @@
 #include "mesh/check.h"
 #include "scene/issues.h"
 
-namespace suite {
+namespace suite::format_obj_odd_obj_test {
 namespace {
 
 std::vector<std::string> files() {
@@ -55,4 +55,4 @@ INSTANTIATE_TEST_SUITE_P(All, OddObj, ::testing::ValuesIn(files()), [](const aut
 });
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_obj_odd_obj_test

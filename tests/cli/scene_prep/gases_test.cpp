@@ -13,7 +13,7 @@
 #include "formats/hitran/hitran.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::gases_test {
 namespace {
 
 using testing::HasSubstr;
@@ -176,4 +176,4 @@ TEST_F(BakeGases, TheExampleRuns) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::gases_test

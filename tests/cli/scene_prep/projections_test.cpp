@@ -10,7 +10,7 @@
 #include "math/vec.h"
 #include "support/programs_kit.h"
 
-namespace suite {
+namespace suite::projections_test {
 namespace {
 
 using testing::HasSubstr;
@@ -92,4 +92,4 @@ TEST_F(Projections, OrthometricHeightsAreReported) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::projections_test

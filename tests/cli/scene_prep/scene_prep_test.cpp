@@ -11,7 +11,7 @@
 #include "optics/models.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::scene_prep_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -370,4 +370,4 @@ TEST_F(ScenePrep, CalibrationRange) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::scene_prep_test

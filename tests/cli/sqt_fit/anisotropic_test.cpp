@@ -12,7 +12,7 @@
 #include "support/run_command.h"
 #include "support/tensor_file.h"
 
-namespace suite {
+namespace suite::anisotropic_test {
 namespace {
 
 const std::string kModel = "ward:diffuse=0.1,specular=0.3,roughness=0.15,roughness_y=0.45";
@@ -180,4 +180,4 @@ TEST_F(SqtAnisotropic, TheHighlightLiesAcrossTheMarks) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::anisotropic_test

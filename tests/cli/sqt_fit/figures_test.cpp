@@ -11,7 +11,7 @@
 #include "math/vec.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::figures_test {
 namespace {
 
 const std::string kFigures = SUITE_BUILD_DIR "/figures/";
@@ -171,4 +171,4 @@ TEST_F(SqtFigures, PlanesShowTheDataBesideTheFit) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::figures_test

@@ -8,7 +8,7 @@
 #include "base/files.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::folder_test {
 namespace {
 
 using testing::HasSubstr;
@@ -110,4 +110,4 @@ TEST_F(Folder, ReplacesNothingThatIsNoTableOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::folder_test

@@ -10,7 +10,7 @@
 #include "formats/sqt/sqt.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::sqt_fit_test {
 namespace {
 
 const std::string kFit = std::string(SUITE_BIN_DIR) + "/sqt-fit ";
@@ -259,4 +259,4 @@ TEST(SqtFitCli, HelpStatesConventions) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sqt_fit_test

@@ -13,7 +13,7 @@
 #include "formats/sqt/sqt.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::export_test {
 namespace {
 
 using testing::HasSubstr;
@@ -144,4 +144,4 @@ TEST_F(Export, WrongUseIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::export_test

@@ -11,7 +11,7 @@
 #include "optics/model_function.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::sqt_inspect_test {
 namespace {
 
 const std::string kInspect = std::string(SUITE_BIN_DIR) + "/sqt-inspect ";
@@ -158,4 +158,4 @@ TEST_F(SqtInspect, BadInputAndUsage) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sqt_inspect_test

@@ -2,7 +2,7 @@
 #include "base/params.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::params_test {
 namespace {
 
 // Asks everything of a node that a reader could ask.
@@ -108,4 +108,4 @@ TEST(Fuzz, PrintableText) {
   }
 }
 
-}  // namespace suite
+}  // namespace suite::params_test

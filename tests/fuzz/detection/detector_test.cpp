@@ -6,7 +6,7 @@
 #include "support/fuzz.h"
 #include "support/response_kit.h"
 
-namespace suite {
+namespace suite::detector_test {
 namespace {
 
 constexpr const char* kText = R"(seed: 3
@@ -74,4 +74,4 @@ TEST(FuzzDetection, ExtremeNumbers) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::detector_test

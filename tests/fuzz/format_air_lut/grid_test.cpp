@@ -1,7 +1,7 @@
 #include "formats/air_lut/air_lut.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_air_lut_grid_test {
 
 namespace {
 void check(std::span<const std::byte> b) {
@@ -25,4 +25,4 @@ TEST(FuzzAirLut, Grid) {
       check, 21, test::kMutations, {"1e300", "nan", "-1", "[]", "[0, 0]", ": [", "H2OSTR", "solar_zenith", "9.9"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_air_lut_grid_test

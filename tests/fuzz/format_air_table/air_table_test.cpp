@@ -5,7 +5,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_air_table_air_table_test {
 
 TEST(FuzzAirTable, File) {
   const TempFolder folder;
@@ -26,4 +26,4 @@ TEST(FuzzAirTable, File) {
   });
 }
 
-}  // namespace suite
+}  // namespace suite::format_air_table_air_table_test

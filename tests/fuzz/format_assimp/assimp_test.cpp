@@ -4,7 +4,7 @@
 #include "scene/issues.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_assimp_assimp_test {
 namespace {
 
 void check(std::span<const std::byte> bytes, const char* file) {
@@ -65,4 +65,4 @@ TEST(FuzzAssimp, WhatTheFileSaysIsDone) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_assimp_assimp_test

@@ -5,7 +5,7 @@
 #include "support/city_kit.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_city_city_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -40,4 +40,4 @@ TEST(FuzzCity, Json) { test::fuzz(test::bytes_of(test::small_city()), read_and_c
 TEST(FuzzCity, Gml) { test::fuzz(test::bytes_of(test::small_gml()), read_and_check, 2, test::kMutations, kXml); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_city_city_test

@@ -3,7 +3,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_curve_responses_test {
 namespace {
 
 class FuzzResponses : public ::testing::Test {
@@ -32,4 +32,4 @@ TEST_F(FuzzResponses, NetCdf) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_curve_responses_test

@@ -7,7 +7,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_dirsig_mutations_test {
 
 namespace {
 
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(Files, DirsigMutations,
 
 }  // namespace
 
-}  // namespace suite
+}  // namespace suite::format_dirsig_mutations_test

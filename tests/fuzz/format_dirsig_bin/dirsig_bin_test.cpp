@@ -4,7 +4,7 @@
 #include "base/files.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_dirsig_bin_dirsig_bin_test {
 
 TEST(FuzzDirsigBin, Revision2) {
   for (const char* order : {"le", "be"})
@@ -12,4 +12,4 @@ TEST(FuzzDirsigBin, Revision2) {
                [](std::span<const std::byte> bytes) { parse_lidar_bin(bytes, "fuzz.bin"); });
 }
 
-}  // namespace suite
+}  // namespace suite::format_dirsig_bin_dirsig_bin_test

@@ -4,7 +4,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_envi_envi_test {
 
 TEST(Fuzz, EnviHeader) {
   const std::string valid =
@@ -65,4 +65,4 @@ TEST(Fuzz, EnviImage) {
              {"=", "{", "}", "-1", "999999999", "bsq", "bip", "data type = 5", "header offset = 8"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_envi_envi_test

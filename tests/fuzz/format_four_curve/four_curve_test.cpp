@@ -4,7 +4,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_four_curve_four_curve_test {
 namespace {
 
 TEST(FuzzFourCurve, File) {
@@ -25,4 +25,4 @@ TEST(FuzzFourCurve, File) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_four_curve_four_curve_test

@@ -3,7 +3,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_gas_recipe_recipe_test {
 
 TEST(FuzzGasRecipe, Recipe) {
   const TempFolder folder;
@@ -19,4 +19,4 @@ TEST(FuzzGasRecipe, Recipe) {
              {"nan", "1e999", "-1", "0", "[", "]", "{", "}", ": ", ", ", "\n", "none", "range_cm", "99999"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_gas_recipe_recipe_test

@@ -4,7 +4,7 @@
 #include "support/fuzz.h"
 #include "support/gltf_kit.h"
 
-namespace suite {
+namespace suite::format_gltf_gltf_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -60,4 +60,4 @@ TEST(FuzzGltf, Text) { test::fuzz(test::bytes_of(model(false)), read_and_check, 
 TEST(FuzzGltf, Container) { test::fuzz(test::bytes_of(model(true)), read_and_check, 2, test::kMutations, kWords); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_gltf_gltf_test

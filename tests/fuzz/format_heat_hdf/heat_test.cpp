@@ -4,7 +4,7 @@
 #include "support/heated_file_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_heat_hdf_heat_test {
 
 TEST(FuzzHeat, File) {
   const TempFolder folder;
@@ -20,4 +20,4 @@ TEST(FuzzHeat, File) {
   });
 }
 
-}  // namespace suite
+}  // namespace suite::format_heat_hdf_heat_test

@@ -4,7 +4,7 @@
 #include "support/searched_scene.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_heat_hdf_operator_test {
 
 namespace {
 
@@ -29,4 +29,4 @@ void fuzz_operator(bool moving) {
 TEST(FuzzHeatOperator, File) { fuzz_operator(false); }
 TEST(FuzzHeatOperator, FileOfWhatMoves) { fuzz_operator(true); }
 
-}  // namespace suite
+}  // namespace suite::format_heat_hdf_operator_test

@@ -7,7 +7,7 @@
 #include "support/fuzz.h"
 #include "support/helios_kit.h"
 
-namespace suite {
+namespace suite::format_helios_helios_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -76,4 +76,4 @@ TEST(FuzzHelios, Points) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_helios_helios_test

@@ -1,7 +1,7 @@
 #include "formats/hitran/hitran.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_hitran_hitran_test {
 
 namespace {
 std::string_view text_of(std::span<const std::byte> b) { return {reinterpret_cast<const char*>(b.data()), b.size()}; }
@@ -27,4 +27,4 @@ TEST(FuzzHitran, Continuum) {
              {"nan", "1e99", "-1", "self", ",", "\n"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_hitran_hitran_test

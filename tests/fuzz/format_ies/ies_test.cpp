@@ -2,7 +2,7 @@
 #include "formats/ies/ies.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_ies_ies_test {
 namespace {
 
 TEST(FuzzIes, Text) {
@@ -20,4 +20,4 @@ TEST(FuzzIes, Text) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_ies_ies_test

@@ -5,7 +5,7 @@
 #include "support/fuzz.h"
 #include "support/las_kit.h"
 
-namespace suite {
+namespace suite::format_las_las_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -26,4 +26,4 @@ TEST(FuzzLas, Old) { test::fuzz(test::bytes_of(test::las(points())), read_and_ch
 TEST(FuzzLas, New) { test::fuzz(test::bytes_of(test::las(points(), 4, 6)), read_and_check, 2); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_las_las_test

@@ -4,7 +4,7 @@
 #include "formats/libradtran/libradtran.h"
 #include "tests/support/fuzz.h"
 
-namespace suite {
+namespace suite::format_libradtran_libradtran_test {
 namespace {
 
 std::string_view text_of(std::span<const std::byte> b) { return {reinterpret_cast<const char*>(b.data()), b.size()}; }
@@ -33,4 +33,4 @@ TEST(LibradtranFuzz, Outputs) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_libradtran_libradtran_test

@@ -3,7 +3,7 @@
 #include "formats/samples/samples.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_measured_text_test {
 
 namespace {
 std::string_view text_of(std::span<const std::byte> b) { return {reinterpret_cast<const char*>(b.data()), b.size()}; }
@@ -36,4 +36,4 @@ TEST(FuzzCsv, Text) {
       [](std::span<const std::byte> b) { check(parse_brdf_csv(text_of(b), "f.csv")); }, 5, test::kMutations);
 }
 
-}  // namespace suite
+}  // namespace suite::format_measured_text_test

@@ -1,7 +1,7 @@
 #include "formats/merl/merl.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_merl_merl_test {
 
 // The table itself is 35 MB of numbers, any of which is legal; what can go wrong is the head and the length.
 TEST(FuzzMerl, HeadAndLength) {
@@ -23,4 +23,4 @@ TEST(FuzzMerl, HeadAndLength) {
   std::printf("%zu mutations, %zu refused\n", count, count);
 }
 
-}  // namespace suite
+}  // namespace suite::format_merl_merl_test

@@ -6,7 +6,7 @@
 #include "formats/tle/tle.h"
 #include "tests/support/fuzz.h"
 
-namespace suite {
+namespace suite::format_motion_motion_test {
 namespace {
 
 std::string_view text_of(std::span<const std::byte> b) { return {reinterpret_cast<const char*>(b.data()), b.size()}; }
@@ -89,4 +89,4 @@ TEST(MotionFuzz, Jitter) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_motion_motion_test

@@ -4,7 +4,7 @@
 #include "formats/motion/track_files.h"
 #include "tests/support/fuzz.h"
 
-namespace suite {
+namespace suite::format_motion_track_files_test {
 namespace {
 
 std::string text_of(std::span<const std::byte> b) { return {reinterpret_cast<const char*>(b.data()), b.size()}; }
@@ -78,4 +78,4 @@ TEST(TrackFilesFuzz, ControlTables) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_motion_track_files_test

@@ -12,7 +12,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_obj_obj_test {
 
 namespace {
 void read_and_check(std::span<const std::byte> bytes) {
@@ -82,4 +82,4 @@ TEST(FuzzObj, Mtl) {
        "\nmap_Kd ", "leaf", "red", "\r", "#", "a b.png", "99999999999999999999"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_obj_obj_test

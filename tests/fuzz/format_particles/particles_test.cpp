@@ -1,7 +1,7 @@
 #include "formats/particles/particles.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_particles_particles_test {
 
 namespace {
 // What is accepted can be asked.
@@ -38,4 +38,4 @@ TEST(FuzzParticles, Asymmetries) {
       check, 33, test::kMutations, kWords);
 }
 
-}  // namespace suite
+}  // namespace suite::format_particles_particles_test

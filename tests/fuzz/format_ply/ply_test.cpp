@@ -3,7 +3,7 @@
 #include "scene/issues.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_ply_ply_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -58,4 +58,4 @@ TEST(FuzzPly, Text) { test::fuzz(test::bytes_of(text()), read_and_check, 1, test
 TEST(FuzzPly, Binary) { test::fuzz(test::bytes_of(binary()), read_and_check, 2, test::kMutations, kWords); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_ply_ply_test

@@ -1,7 +1,7 @@
 #include "formats/profile/profile.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_profile_profile_test {
 
 namespace {
 void check(std::span<const std::byte> b) {
@@ -26,4 +26,4 @@ TEST(FuzzProfile, Sounding) {
              check, 12, test::kMutations, {"       ", "-243.5 ", "  1e30 ", "\n", "PRES", "----"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_profile_profile_test

@@ -3,7 +3,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_pulse_pulse_test {
 
 TEST(FuzzPulse, Columns) {
   const TempFolder folder;
@@ -17,4 +17,4 @@ TEST(FuzzPulse, Columns) {
              1, 500, {"nan", "1e308", "-", ",,", "ns"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_pulse_pulse_test

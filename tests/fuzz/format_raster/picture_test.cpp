@@ -2,7 +2,7 @@
 #include "formats/raster/raster.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_raster_picture_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -21,4 +21,4 @@ TEST(FuzzPicture, Jpeg) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_raster_picture_test

@@ -4,7 +4,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_render_state_state_test {
 
 TEST(FuzzState, File) {
   const TempFolder folder;
@@ -36,4 +36,4 @@ TEST(FuzzState, File) {
   });
 }
 
-}  // namespace suite
+}  // namespace suite::format_render_state_state_test

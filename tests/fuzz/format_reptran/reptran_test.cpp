@@ -6,7 +6,7 @@
 #include "support/netcdf3_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_reptran_reptran_test {
 
 TEST(FuzzReptran, Files) {
   const TempFolder folder;
@@ -28,4 +28,4 @@ TEST(FuzzReptran, Files) {
   }
 }
 
-}  // namespace suite
+}  // namespace suite::format_reptran_reptran_test

@@ -5,7 +5,7 @@
 #include "support/response_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_response_response_test {
 
 TEST(FuzzResponse, File) {
   const TempFolder folder;
@@ -23,4 +23,4 @@ TEST(FuzzResponse, File) {
   });
 }
 
-}  // namespace suite
+}  // namespace suite::format_response_response_test

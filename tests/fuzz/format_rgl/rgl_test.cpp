@@ -2,7 +2,7 @@
 #include "support/fuzz.h"
 #include "support/tensor_file.h"
 
-namespace suite {
+namespace suite::format_rgl_rgl_test {
 
 namespace {
 void parse_and_ask(std::span<const std::byte> bytes) {
@@ -21,4 +21,4 @@ TEST(FuzzRgl, AnisotropicSpectral) {
   test::fuzz(test::small_rgl({-3.14159265f, 0.0f, 3.14159265f}, 4).build(), parse_and_ask, 2);
 }
 
-}  // namespace suite
+}  // namespace suite::format_rgl_rgl_test

@@ -10,7 +10,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_scene_test {
 
 namespace {
 
@@ -159,4 +159,4 @@ TEST_F(FuzzScene, InstanceTable) {
              {"qw", ",", "nan", "1e999", "scale", "\n", "#", "0"});
 }
 
-}  // namespace suite
+}  // namespace suite::format_scene_text_scene_test

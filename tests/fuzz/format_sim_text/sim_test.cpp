@@ -5,7 +5,7 @@
 #include "support/platform_text.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_sim_text_sim_test {
 
 namespace {
 
@@ -133,4 +133,4 @@ TEST(FuzzSim, NightSkyAndDetectors) {
       test::bytes_of(text), [&](std::span<const std::byte> b) { read(folder, b); }, 3, test::kMutations, kWords);
 }
 
-}  // namespace suite
+}  // namespace suite::format_sim_text_sim_test

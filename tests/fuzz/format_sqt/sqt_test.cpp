@@ -4,7 +4,7 @@
 #include "support/fuzz.h"
 #include "support/sqt_examples.h"
 
-namespace suite {
+namespace suite::format_sqt_sqt_test {
 namespace {
 
 void parse_and_ask(std::span<const std::byte> bytes) {
@@ -53,4 +53,4 @@ TEST(FuzzSqt, PaperBehindTheChecksum) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_sqt_sqt_test

@@ -2,7 +2,7 @@
 #include "formats/star_catalogue/star_catalogue.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_star_catalogue_star_catalogue_test {
 namespace {
 
 TEST(FuzzStarCatalogue, Text) {
@@ -18,4 +18,4 @@ TEST(FuzzStarCatalogue, Text) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_star_catalogue_star_catalogue_test

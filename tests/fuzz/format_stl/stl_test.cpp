@@ -3,7 +3,7 @@
 #include "scene/issues.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_stl_stl_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -37,4 +37,4 @@ TEST(FuzzStl, Text) { test::fuzz(test::bytes_of(kText), read_and_check, 1, test:
 TEST(FuzzStl, Binary) { test::fuzz(test::bytes_of(binary()), read_and_check, 2, test::kMutations); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_stl_stl_test

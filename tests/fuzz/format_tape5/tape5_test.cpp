@@ -7,7 +7,7 @@
 #include "formats/tape5/tape5.h"
 #include "tests/support/fuzz.h"
 
-namespace suite {
+namespace suite::format_tape5_tape5_test {
 namespace {
 
 TEST(Tape5Fuzz, Decks) {
@@ -25,4 +25,4 @@ TEST(Tape5Fuzz, Decks) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tape5_tape5_test

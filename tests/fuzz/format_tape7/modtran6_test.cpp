@@ -4,7 +4,7 @@
 #include "formats/tape7/modtran6.h"
 #include "tests/support/fuzz.h"
 
-namespace suite {
+namespace suite::format_tape7_modtran6_test {
 namespace {
 
 TEST(Modtran6Fuzz, Cases) {
@@ -22,4 +22,4 @@ TEST(Modtran6Fuzz, Cases) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tape7_modtran6_test

@@ -7,7 +7,7 @@
 #include "formats/tape7/path_table.h"
 #include "tests/support/fuzz.h"
 
-namespace suite {
+namespace suite::format_tape7_tape7_test {
 namespace {
 
 TEST(Tape7Fuzz, Runs) {
@@ -34,4 +34,4 @@ TEST(Tape7Fuzz, Runs) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tape7_tape7_test

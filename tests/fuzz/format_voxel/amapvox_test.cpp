@@ -3,7 +3,7 @@
 #include "scene/issues.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_voxel_amapvox_test {
 namespace {
 
 void read_and_check(std::span<const std::byte> bytes) {
@@ -24,4 +24,4 @@ const std::vector<std::string> kWords{"\n", " -1", " 99999999999", " NA", " 1e99
 TEST(FuzzAmapVox, Text) { test::fuzz(test::bytes_of(kFile), read_and_check, 1, test::kMutations, kWords); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_voxel_amapvox_test

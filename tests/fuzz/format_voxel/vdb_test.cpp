@@ -7,7 +7,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_voxel_vdb_test {
 
 namespace {
 
@@ -47,4 +47,4 @@ TEST(FuzzVdb, ActiveMask) { fuzz_vdb(openvdb::io::COMPRESS_ACTIVE_MASK, false, 2
 TEST(FuzzVdb, Zip) { fuzz_vdb(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK, false, 3); }
 TEST(FuzzVdb, Blosc) { fuzz_vdb(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK, true, 4); }
 
-}  // namespace suite
+}  // namespace suite::format_voxel_vdb_test

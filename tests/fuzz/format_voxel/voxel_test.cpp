@@ -4,7 +4,7 @@
 #include "support/fuzz.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_voxel_voxel_test {
 
 TEST(FuzzVoxel, Text) {
   TempFolder folder;
@@ -27,4 +27,4 @@ TEST(FuzzVoxel, Text) {
       {"{", "}", "[", "]", ": ", "nan", "1e999", "-1", "0", "1e6", "999999", "float64", "material", "\n", "  "});
 }
 
-}  // namespace suite
+}  // namespace suite::format_voxel_voxel_test

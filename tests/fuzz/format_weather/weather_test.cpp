@@ -7,7 +7,7 @@
 #include "formats/weather/weather.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::format_weather_weather_test {
 namespace {
 
 void check(std::span<const std::byte> b, const WeatherOptions& options) {
@@ -81,4 +81,4 @@ TEST(WeatherFuzz, Csv) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_weather_weather_test

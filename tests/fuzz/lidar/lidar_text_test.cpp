@@ -6,7 +6,7 @@
 #include "lidar/pulse_train.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::lidar_text_test {
 namespace {
 
 constexpr const char* kText = R"(kind: lidar
@@ -76,4 +76,4 @@ TEST(FuzzLidar, ExtremeNumbers) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lidar_text_test

@@ -2,7 +2,7 @@
 #include "study/rows.h"
 #include "support/fuzz.h"
 
-namespace suite {
+namespace suite::study_test {
 
 TEST(FuzzStudy, Table) {
   StudyRow row;
@@ -17,4 +17,4 @@ TEST(FuzzStudy, Table) {
              1, test::kMutations, {",", "\n", "nan", "-1", "1e999", "\"", "id", "#"});
 }
 
-}  // namespace suite
+}  // namespace suite::study_test

@@ -9,7 +9,7 @@
 #include "air/size_distribution.h"
 #include "math/vec.h"
 
-namespace suite {
+namespace suite::aerosols_test {
 namespace {
 
 struct Published {
@@ -191,4 +191,4 @@ TEST(Aerosols, DropsAreNearEcRads) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::aerosols_test

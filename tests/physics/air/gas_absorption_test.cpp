@@ -9,7 +9,7 @@
 #include "air/lowtran.h"
 #include "spectral/planck.h"
 
-namespace suite {
+namespace suite::gas_absorption_test {
 namespace {
 
 std::vector<AirLevel> levels_of(const AirProfile& profile, double from = 0) {
@@ -294,4 +294,4 @@ TEST(GasAbsorption, FewPointsKeepTheEmission) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::gas_absorption_test

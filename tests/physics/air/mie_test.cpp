@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "math/vec.h"
 
-namespace suite {
+namespace suite::mie_test {
 namespace {
 
 struct Row {
@@ -171,4 +171,4 @@ TEST(Mie, MatricesAgreeWithTheTable) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mie_test

@@ -5,7 +5,7 @@
 #include "air/ordinate_angles.h"
 #include "support/phase_moments.h"
 
-namespace suite::test {
+namespace suite::test::ordinate_identities_test {
 namespace {
 
 // Three layers of different kinds, the middle one strongly forward.
@@ -271,4 +271,4 @@ TEST(OrdinateIdentities, SecantsOfTheBeam) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ordinate_identities_test

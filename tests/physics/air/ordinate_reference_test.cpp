@@ -6,7 +6,7 @@
 #include "air/discrete_ordinates.h"
 #include "support/phase_moments.h"
 
-namespace suite::test {
+namespace suite::test::ordinate_reference_test {
 namespace {
 
 struct Flux {
@@ -164,4 +164,4 @@ TEST(OrdinateReference, TwentyViewsUnderTwoSuns) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ordinate_reference_test

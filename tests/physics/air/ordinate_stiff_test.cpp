@@ -5,7 +5,7 @@
 #include "air/ordinate_angles.h"
 #include "support/phase_moments.h"
 
-namespace suite::test {
+namespace suite::test::ordinate_stiff_test {
 namespace {
 
 DiscreteOrdinates solve(std::span<const DiffuseLayer> layers, double sun, int streams, double above = 0,
@@ -290,4 +290,4 @@ TEST(OrdinateStiff, TwoHundredUnlikeLayers) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ordinate_stiff_test

@@ -10,7 +10,7 @@
 #include "air/discrete_ordinates.h"
 #include "support/phase_moments.h"
 
-namespace suite::test {
+namespace suite::test::ordinate_tables_test {
 namespace {
 
 struct Fluxes {
@@ -353,4 +353,4 @@ INSTANTIATE_TEST_SUITE_P(Layered, Tables, testing::ValuesIn(layered()), name);
 INSTANTIATE_TEST_SUITE_P(Everything, Tables, testing::ValuesIn(everything()), name);
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ordinate_tables_test

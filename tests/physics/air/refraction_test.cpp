@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "math/vec.h"
 
-namespace suite {
+namespace suite::refraction_test {
 namespace {
 
 constexpr double kRadius = 6371000;
@@ -183,4 +183,4 @@ TEST(Refraction, BadProfiles) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::refraction_test

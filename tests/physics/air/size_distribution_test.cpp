@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "math/vec.h"
 
-namespace suite {
+namespace suite::size_distribution_test {
 namespace {
 
 TEST(SizeDistribution, HasTheMomentsOfItsKind) {
@@ -109,4 +109,4 @@ TEST(SizeDistribution, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::size_distribution_test

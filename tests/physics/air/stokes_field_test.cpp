@@ -18,7 +18,7 @@
 
 #include "formats/reptran/netcdf3.h"
 
-namespace suite {
+namespace suite::stokes_field_test {
 namespace {
 
 using Way = StokesField::Way;
@@ -383,4 +383,4 @@ TEST(StokesField, AgreesWithPstarAboutSpheroids) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::stokes_field_test

@@ -12,7 +12,7 @@
 #include "spectral/planck.h"
 #include "support/weather_kit.h"
 
-namespace suite {
+namespace suite::format_weather_denver_test {
 namespace {
 
 struct Sums {
@@ -97,4 +97,4 @@ TEST(Denver, TheYearToItsSums) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_weather_denver_test

@@ -8,7 +8,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::audit_test {
 namespace {
 
 using namespace test;
@@ -123,4 +123,4 @@ TEST(Audit, SlabWithSourceBetweenPlates) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::audit_test

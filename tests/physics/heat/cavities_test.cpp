@@ -6,7 +6,7 @@
 #include "support/heated_stack_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::cavities_test {
 namespace {
 
 using namespace test;
@@ -132,4 +132,4 @@ TEST(Cavities, BareAluminiumInTheSun) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::cavities_test

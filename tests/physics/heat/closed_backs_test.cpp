@@ -3,7 +3,7 @@
 
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::closed_backs_test {
 namespace {
 
 using namespace test;
@@ -37,4 +37,4 @@ TEST(ClosedBacks, OfAHouseAreSeenByTheGroundUnderItAlone) {
 TEST(ClosedBacks, UnderALiftedRoofAreTold) { EXPECT_TRUE(told(1, 1)); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::closed_backs_test

@@ -8,7 +8,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::coupled_steps_test {
 namespace {
 
 using namespace test;
@@ -144,4 +144,4 @@ TEST(CoupledSteps, GustsAreAveragedAndNotAliased) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::coupled_steps_test

@@ -31,7 +31,7 @@
 #include "support/heated_scene.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::courtyard_test {
 namespace {
 
 using namespace test;
@@ -139,12 +139,12 @@ std::string weather_text(const std::string& folder) {
   return out;
 }
 
-HeatedScene scene_at(const std::string& folder, const HeatSpec& spec) {
+BalancedScene scene_at(const std::string& folder, const HeatSpec& spec) {
   const std::map<std::string, double> room{{"back_k", 293}, {"back_film_w_m2_k", 8}};
   const auto texts = [](const char* back) {
     return std::map<std::string, std::string>{{"convection", "tarp"}, {"roughness", "rough"}, {"back", back}};
   };
-  return HeatedScene(
+  return BalancedScene(
       Site(folder).meshes(),
       {warmed("asphalt", 0.18, 0.95), warmed("grass", 0.16, 0.94), warmed("roof", 0.18, 0.95), warmed("wall", 0.2, 0.9),
        warmed("station", 0, 1)},
@@ -181,7 +181,7 @@ struct Measured {
 };
 
 // Prints the means of the measured hours from all sides; the root mean square error of longwave from below, W/m2.
-double compare(const HeatedScene& scene, const HeatResult& result, const Measured& measured) {
+double compare(const BalancedScene& scene, const HeatResult& result, const Measured& measured) {
   double up = 0;
   for (const char* kind : {"K", "L"})
     for (const auto& [name, normal] : kSides) {
@@ -216,7 +216,7 @@ TEST(Courtyard, SixSides) {
   HeatSpec spec;
   spec.span = {0, 86400};
   spec.step = 600, spec.elements = 16000, spec.paths = 64, spec.ground_albedo = 0.18;
-  const HeatedScene scene = scene_at(folder, spec);
+  const BalancedScene scene = scene_at(folder, spec);
   const Measured measured(folder);
   for (const LongwaveModel model :
        {LongwaveModel::dilley_obrien, LongwaveModel::clark_allen, LongwaveModel::brutsaert}) {
@@ -231,4 +231,4 @@ TEST(Courtyard, SixSides) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::courtyard_test

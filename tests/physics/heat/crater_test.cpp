@@ -6,7 +6,7 @@
 #include "math/stats.h"
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::crater_test {
 namespace {
 
 using namespace test;
@@ -82,4 +82,4 @@ TEST(Crater, ShadowOfABowl) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::crater_test

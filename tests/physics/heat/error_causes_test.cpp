@@ -7,7 +7,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::error_causes_test {
 namespace {
 
 using namespace test;
@@ -114,4 +114,4 @@ TEST(ErrorCauses, StepsInTime) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::error_causes_test

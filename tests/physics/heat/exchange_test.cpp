@@ -11,7 +11,7 @@
 #include "support/message_of.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::exchange_test {
 namespace {
 
 using namespace test;
@@ -320,4 +320,4 @@ TEST(Exchange, RefusesWhatIsNoExchange) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::exchange_test

@@ -21,7 +21,7 @@
 #include "support/heated_scene.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::facades_test {
 namespace {
 
 using namespace test;
@@ -94,7 +94,7 @@ Box traced_box(const HeatWeather& weather, double noon) {
   spec.span = {noon - 43200, noon + 43200};
   spec.step = 1800, spec.elements = 60;
   const WeatherLoads loads = weather_loads(weather, spec);
-  const HeatedScene scene({box({-1, -1, 10}, {1, 1, 12}, 0, true)}, {warmed("black", 0, 1)},
+  const BalancedScene scene({box({-1, -1, 10}, {1, 1, 12}, 0, true)}, {warmed("black", 0, 1)},
                           {heat_of({}, {}, {{"back", "adiabatic"}})}, spec);
   const Sunlight sun =
       trace_sunlight(*scene.tracer, *scene.elements, *scene.faces, scene.optics, loads.course, {8, 626, 1});
@@ -198,4 +198,4 @@ TEST(Facades, DenversYear) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::facades_test

@@ -10,7 +10,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::final_gather_test {
 namespace {
 
 using namespace test;
@@ -166,4 +166,4 @@ TEST(FinalGather, WhatStandsElsewhereHasTheTemperatureOfItsElement) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::final_gather_test

@@ -9,7 +9,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::influence_test {
 namespace {
 
 using namespace test;
@@ -146,4 +146,4 @@ TEST(Influence, WhatIsSeenIsKept) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::influence_test

@@ -10,7 +10,7 @@
 #include "support/message_of.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::lateral_test {
 namespace {
 
 using namespace test;
@@ -307,4 +307,4 @@ TEST(Lateral, IsTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lateral_test

@@ -19,7 +19,7 @@
 #include "support/message_of.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::lunar_day_test {
 namespace {
 
 using namespace test;
@@ -55,8 +55,8 @@ HeatWeather moon_under(const Weather& weather) {
   return moon;
 }
 
-HeatedScene ground(const HeatSpec& spec, double albedo) {
-  return HeatedScene(
+BalancedScene ground(const HeatSpec& spec, double albedo) {
+  return BalancedScene(
       {quad(50, 0, 0)}, {warmed("regolith", albedo, 0.95)},
       {heat_of(lunar_regolith(), {{"back_flux_w_m2", 0.018}}, {{"convection", "none"}, {"back", "flux"}})}, spec);
 }
@@ -68,7 +68,7 @@ TEST(LunarDay, NightAsMeasured) {
   spec.span = {0, kPeriod};
   spec.step = kPeriod / 720, spec.elements = 1, spec.paths = 512;
   const double albedo = even_albedo();
-  const HeatedScene scene = ground(spec, albedo);
+  const BalancedScene scene = ground(spec, albedo);
   const HeatResult result = scene.solve(weather_loads(moon_under(weather), spec), spec);
   for (const std::string& note : result.notes) std::printf("%s\n", note.c_str());
   ASSERT_EQ(scene.elements->size(), 1u);
@@ -108,7 +108,7 @@ TEST(LunarDay, StoresWhatItTakesUp) {
   HeatSpec spec;
   spec.span = {0, 10 * 86400};
   spec.step = 1800, spec.elements = 1, spec.paths = 64, spec.periodic = false;
-  const HeatedScene scene = ground(spec, 0.18);
+  const BalancedScene scene = ground(spec, 0.18);
   const HeatResult result = scene.solve(weather_loads(moon_under(weather), spec), spec);
   const double area = scene.elements->total_area();
   std::printf("ten days from noon: stored %.3f W/m2, residual %.4f W/m2\n", result.balance.stored / area,
@@ -124,4 +124,4 @@ TEST(LunarDay, AirIsChecked) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lunar_day_test

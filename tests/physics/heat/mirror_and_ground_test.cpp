@@ -12,7 +12,7 @@
 #include "math/warps.h"
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::mirror_and_ground_test {
 namespace {
 
 using namespace test;
@@ -164,4 +164,4 @@ TEST(MirrorAndGround, SidesOfABoard) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mirror_and_ground_test

@@ -6,7 +6,7 @@
 
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::mirrored_sun_test {
 namespace {
 
 using namespace test;
@@ -89,4 +89,4 @@ TEST(MirroredSun, BlackFloorUnderWater) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mirrored_sun_test

@@ -7,7 +7,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::near_sun_test {
 namespace {
 
 using namespace test;
@@ -88,4 +88,4 @@ TEST(NearSun, AnotherDayWithoutNewRays) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::near_sun_test

@@ -9,7 +9,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::outgoing_test {
 namespace {
 
 using namespace test;
@@ -124,4 +124,4 @@ TEST(Outgoing, FramesOverAllBandsSendWhatTheBalanceSays) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::outgoing_test

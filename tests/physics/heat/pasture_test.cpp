@@ -37,7 +37,7 @@
 #include "support/heated_scene.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::pasture_test {
 namespace {
 
 using namespace test;
@@ -183,7 +183,7 @@ TEST(Pasture, WithTheModelOfWetness) {
   const HeatSpec spec = day();
   std::map<std::string, double> numbers = pasture.air().numbers;
   numbers["wetness"] = kWetness;
-  const HeatedScene scene({quad(50, 0, 0)}, {warmed("grass", pasture.albedo, kEmissivity)},
+  const BalancedScene scene({quad(50, 0, 0)}, {warmed("grass", pasture.albedo, kEmissivity)},
                           {heat_of(pasture.layers(), numbers, {{"convection", "constant"}})}, spec);
   const HeatResult result = scene.solve(weather_loads(as_it_is(weather), spec), spec);
   const auto kelvin = [&](size_t k) {
@@ -196,4 +196,4 @@ TEST(Pasture, WithTheModelOfWetness) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::pasture_test

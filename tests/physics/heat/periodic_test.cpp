@@ -11,7 +11,7 @@
 #include "support/message_of.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::periodic_test {
 namespace {
 
 using namespace test;
@@ -201,4 +201,4 @@ TEST(Gusts, LongStepsSeeTheirMeans) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::periodic_test

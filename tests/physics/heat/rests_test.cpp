@@ -8,7 +8,7 @@
 #include "math/stats.h"
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::rests_test {
 namespace {
 
 using namespace test;
@@ -201,4 +201,4 @@ TEST(Rests, SharesOfMomentsKeepIntegrals) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::rests_test

@@ -10,7 +10,7 @@
 #include "support/heat_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::slab_batch_test {
 namespace {
 
 using namespace test;
@@ -276,4 +276,4 @@ TEST(SlabBatch, IsTheSingleSlabManyTimes) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::slab_batch_test

@@ -6,7 +6,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::sunlit_test {
 namespace {
 
 using namespace test;
@@ -141,4 +141,4 @@ TEST(Sunlit, SweepingShadowEdge) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sunlit_test

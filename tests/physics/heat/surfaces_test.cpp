@@ -10,7 +10,7 @@
 #include "support/message_of.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::surfaces_test {
 namespace {
 
 using namespace test;
@@ -198,4 +198,4 @@ TEST(Surfaces, LeavesWithoutABalanceAreNamed) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::surfaces_test

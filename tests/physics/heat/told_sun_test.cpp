@@ -7,7 +7,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::told_sun_test {
 namespace {
 
 using namespace test;
@@ -106,4 +106,4 @@ TEST(ToldSun, UnbiasedWhateverIsToldAndLessNoisyWhereItIsTrue) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::told_sun_test

@@ -9,7 +9,7 @@
 
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::view_factors_test {
 namespace {
 
 using namespace test;
@@ -193,4 +193,4 @@ TEST(ViewFactors, OfTheCatalogue) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::view_factors_test

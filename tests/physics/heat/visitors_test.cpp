@@ -6,7 +6,7 @@
 
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::visitors_test {
 namespace {
 
 using namespace test;
@@ -50,4 +50,4 @@ TEST(Visitors, WhatIsSpreadOverTheSpanIsTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::visitors_test

@@ -11,7 +11,7 @@
 #include "light/stratified_air.h"
 #include "spectral/planck.h"
 
-namespace suite {
+namespace suite::air_bands_test {
 namespace {
 
 // Intervals side by side, by wavenumber, with their g-points.
@@ -253,4 +253,4 @@ TEST(AirBands, LineCoresHaveTheTemperatureOfTheAirAround) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_bands_test

@@ -10,7 +10,7 @@
 #include "light/stratified_air.h"
 #include "spectral/planck.h"
 
-namespace suite {
+namespace suite::air_identities_test {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -173,4 +173,4 @@ TEST(AirIdentities, WhiteGroundsAndAirKeepAllEnergy) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_identities_test

@@ -11,7 +11,7 @@
 #include "air/molecules.h"
 #include "light/stratified_air.h"
 
-namespace suite {
+namespace suite::air_views_test {
 namespace {
 
 constexpr double kSunAzimuth = 0.3;
@@ -183,4 +183,4 @@ TEST(AirViews, TheLimbOfTheDiffuseField) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_views_test

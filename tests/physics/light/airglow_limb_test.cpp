@@ -7,7 +7,7 @@
 #include "light/night/glow_shells.h"
 #include "support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::airglow_limb_test {
 namespace {
 
 constexpr double kHeight = 400e3;
@@ -79,4 +79,4 @@ TEST(AirglowLimb, TheSkyEndsAtTheEarth) {
 TEST(AirglowLimb, AirIsBehindIt) { EXPECT_NEAR(seen({at(0)}, {0, 1}, 1.0).radiance[0] / expected(at(0)), 1, 1e-4); }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::airglow_limb_test

@@ -13,7 +13,7 @@
 #include "tests/support/message_of.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::atmosphere_test {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -255,4 +255,4 @@ TEST(Earth, HidesTheSunAtNight) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::atmosphere_test

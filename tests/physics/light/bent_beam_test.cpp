@@ -12,7 +12,7 @@
 #include "support/message_of.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::bent_beam_test {
 namespace {
 
 using testing::HasSubstr;
@@ -199,4 +199,4 @@ TEST(BentBeam, ASunBelowTheHorizonNeedsARoundEarth) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::bent_beam_test

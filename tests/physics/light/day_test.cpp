@@ -14,7 +14,7 @@
 #include "support/message_of.h"
 #include "support/radiometry_kit.h"
 
-namespace suite {
+namespace suite::day_test {
 namespace {
 
 using testing::HasSubstr;
@@ -253,4 +253,4 @@ TEST(Day, LongCapturesAreTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::day_test

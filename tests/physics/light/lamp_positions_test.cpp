@@ -11,7 +11,7 @@
 #include "tests/support/lamps_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::lamp_positions_test {
 namespace {
 
 enum class Shape { sphere, scaled_sphere, disk, plane, mesh };
@@ -194,4 +194,4 @@ TEST(LampPositions, Furnaces) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lamp_positions_test

@@ -13,7 +13,7 @@
 #include "tests/support/lamps_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::lamp_visibility_test {
 namespace {
 
 constexpr int kSamples = 1500;
@@ -290,4 +290,4 @@ TEST(LampVisibility, APlateBetweenTakesAll) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lamp_visibility_test

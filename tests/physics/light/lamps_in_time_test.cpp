@@ -9,7 +9,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/message_of.h"
 
-namespace suite::test {
+namespace suite::test::lamps_in_time_test {
 namespace {
 
 constexpr double kHeight = 2, kSpeed = 3, kIntensity = 5, kReflectance = 0.5;
@@ -210,4 +210,4 @@ TEST(LampsInTime, WhatCannotCarryIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lamps_in_time_test

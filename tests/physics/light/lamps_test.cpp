@@ -11,7 +11,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/message_of.h"
 
-namespace suite::test {
+namespace suite::test::lamps_test {
 namespace {
 
 SourceSpecs lit_by(std::vector<LampSpec> lamps) {
@@ -234,4 +234,4 @@ TEST(LampsRefuse, WhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lamps_test

@@ -13,7 +13,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "tests/support/ring_light.h"
 
-namespace suite::test {
+namespace suite::test::new_light_test {
 namespace {
 
 const bool kRingAdded = (light_rows().add(ring_row()), true);
@@ -98,4 +98,4 @@ TEST(NewLight, ItsSpectrumChoosesBinsAndTellsDarkBands) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::new_light_test

@@ -10,7 +10,7 @@
 #include "light/kinds/night_sky.h"
 #include "support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::night_air_test {
 namespace {
 
 SourceSpecs galaxies(std::optional<AirScattering> scattering) {
@@ -58,4 +58,4 @@ TEST(NightAir, TheFieldsPathsFindWhatIsScattered) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::night_air_test

@@ -8,7 +8,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::periodic_lamps_test {
 namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
@@ -192,4 +192,4 @@ TEST(PeriodicLamps, InFog) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::periodic_lamps_test

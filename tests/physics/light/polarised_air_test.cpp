@@ -13,7 +13,7 @@
 #include "air/stokes_field.h"
 #include "light/stratified_air.h"
 
-namespace suite {
+namespace suite::polarised_air_test {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity(), kSunAzimuth = 0.3, kGround = 0.2;
@@ -164,4 +164,4 @@ TEST(PolarisedAir, TablesHaveABound) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::polarised_air_test

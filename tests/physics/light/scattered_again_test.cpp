@@ -11,7 +11,7 @@
 #include "math/sampling.h"
 #include "optics/phase_function.h"
 
-namespace suite {
+namespace suite::scattered_again_test {
 namespace {
 
 struct State {
@@ -149,4 +149,4 @@ TEST(ScatteredAgain, MattersInTheBlue) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::scattered_again_test

@@ -16,7 +16,7 @@
 #include "tests/support/message_of.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::sources_test {
 namespace {
 
 // ASTM G173-03: columns wavelength nm, extraterrestrial, global tilt, direct and circumsolar, W/(m2 nm).
@@ -172,4 +172,4 @@ TEST(ThermalSky, LayersOfAir) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::sources_test

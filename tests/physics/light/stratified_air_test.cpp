@@ -14,7 +14,7 @@
 #include "spectral/planck.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::stratified_air_test {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -266,4 +266,4 @@ TEST(StratifiedAir, TheFieldIsThatOfPathsScatteredInTheAir) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stratified_air_test

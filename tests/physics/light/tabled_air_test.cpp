@@ -11,7 +11,7 @@
 #include "support/message_of.h"
 #include "support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::tabled_air_test {
 namespace {
 
 using testing::HasSubstr;
@@ -165,4 +165,4 @@ TEST(TabledAir, BinsAreChosenForItsSpectra) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::tabled_air_test

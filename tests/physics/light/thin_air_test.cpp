@@ -8,7 +8,7 @@
 #include "light/air_vertices.h"
 #include "light/stratified_air.h"
 
-namespace suite {
+namespace suite::thin_air_test {
 namespace {
 
 AirSpec hazy_air() {
@@ -268,4 +268,4 @@ TEST(ThinAir, PlacesAreDrawnWithTheDensityTheyTell) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::thin_air_test

@@ -11,7 +11,7 @@
 #include "light/stratified_air.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::users_particles_test {
 namespace {
 
 // A named kind as a file has it. scale: of the albedo.
@@ -131,4 +131,4 @@ TEST(UsersParticles, PathsAreScatteredByThemAsByTheirModel) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::users_particles_test

@@ -9,11 +9,11 @@
 #include "math/warps.h"
 #include "support/screw.h"
 
-using namespace suite;
+namespace suite::sclerp_test {
 
 namespace {
 
-using namespace suite::test;
+using namespace test;
 
 Dir any_axis(Pcg32& rng) { return uniform_sphere({rng.uniform(), rng.uniform()}); }
 
@@ -95,3 +95,5 @@ TEST(Pose, MatricesQuaternionsAndDualQuaternionsAgree) {
     EXPECT_LT(length(p.affine().point({1, 2, 3}) - p.point({1, 2, 3})), 1e-13);
   }
 }
+
+}  // namespace suite::sclerp_test

@@ -7,7 +7,7 @@
 #include "sqt_fit/aligned_fit.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::narrow_lobe_test {
 namespace {
 
 constexpr double kSun = 0.00465, kWidth = 0.0012;  // rad: half angle of the disk, width in the half vector's slope
@@ -81,4 +81,4 @@ TEST(NarrowLobe, SeesThePartOfTheDiskThatItReflects) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::narrow_lobe_test

@@ -14,7 +14,7 @@
 #include "support/conformance.h"
 #include "support/microsurface.h"
 
-namespace suite {
+namespace suite::rough_energy_test {
 namespace {
 
 using List = std::vector<double>;
@@ -283,4 +283,4 @@ TEST(RoughAgainstWalks, Metals) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::rough_energy_test

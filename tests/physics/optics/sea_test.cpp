@@ -8,7 +8,7 @@
 
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::sea_test {
 namespace {
 
 constexpr double kIndex = 1.34;
@@ -119,4 +119,4 @@ TEST(Sea, KeepsEnergy) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::sea_test

@@ -3,7 +3,7 @@
 
 #include "extreme/case.h"
 
-namespace suite::extreme {
+namespace suite::extreme::extreme_test {
 namespace {
 
 TEST(Extreme, EveryCaseHolds) {
@@ -33,4 +33,4 @@ TEST(Extreme, EveryFaultIsNoticed) {
 }
 
 }  // namespace
-}  // namespace suite::extreme
+}  // namespace suite::extreme::extreme_test

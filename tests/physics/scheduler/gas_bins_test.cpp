@@ -13,7 +13,7 @@
 #include "support/bins_kit.h"
 #include "support/even_air.h"
 
-namespace suite {
+namespace suite::gas_bins_test {
 namespace {
 
 AirSpec summer() {
@@ -294,4 +294,4 @@ TEST(GasBins, ReportsWhatEvenIntervalsMiss) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::gas_bins_test

@@ -11,7 +11,7 @@
 #include "sensor/quality.h"
 #include "tests/support/lamps_kit.h"
 
-namespace suite::test {
+namespace suite::test::no_information_test {
 namespace {
 
 const Ray kDown{{0, 0, 3}, {0, 0, -1}, 0};
@@ -117,4 +117,4 @@ TEST(NoInformation, UnknownErrorsAreTheLargest) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::no_information_test

@@ -18,7 +18,7 @@
 #include "support/radiometry_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite::test {
+namespace suite::test::prepass_test {
 namespace {
 
 using testing::HasSubstr;
@@ -390,4 +390,4 @@ TEST(Prepass, does_not_heat_by_itself) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::prepass_test

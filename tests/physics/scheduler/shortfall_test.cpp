@@ -10,7 +10,7 @@
 #include "math/sampling.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::shortfall_test {
 namespace {
 
 // A point lamp of intensity 1 in the middle of a sphere of radius 1.
@@ -163,4 +163,4 @@ TEST(RejectedSamples, IntervalsCover) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::shortfall_test

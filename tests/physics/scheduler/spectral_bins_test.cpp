@@ -9,7 +9,7 @@
 #include "math/sampling.h"
 #include "support/bins_kit.h"
 
-namespace suite {
+namespace suite::spectral_bins_test {
 namespace {
 
 using test::BinSensor;
@@ -149,4 +149,4 @@ TEST(SpectralBins, HundredBandsOfInventedSurfacesUnderTheSunOnTheGround) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::spectral_bins_test

@@ -7,7 +7,7 @@
 #include "tests/support/pipeline_kit.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::surroundings_test {
 namespace {
 
 constexpr double kGlass = 1.5, kWater = 1.34;
@@ -139,4 +139,4 @@ TEST(Surroundings, PrioritiesThatAreAmbiguous) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::surroundings_test

@@ -12,7 +12,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/pipeline_kit.h"
 
-namespace suite::test {
+namespace suite::test::techniques_test {
 namespace {
 
 // A floor of 2 m x 2 m that reflects a low sun onto a wall, over a bed of which little is seen.
@@ -209,4 +209,4 @@ TEST(Techniques, TheTableAgreesWithTheKernels) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::techniques_test

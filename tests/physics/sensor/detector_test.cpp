@@ -9,7 +9,7 @@
 #include "spectral/planck.h"
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::detector_test {
 namespace {
 
 using test::PlatformKit;
@@ -221,4 +221,4 @@ TEST(Detector, ChipsHaveTheirOwnResponsesAndGains) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::detector_test

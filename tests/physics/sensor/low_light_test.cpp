@@ -11,7 +11,7 @@
 #include "support/message_of.h"
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::low_light_test {
 namespace {
 
 using test::PlatformKit;
@@ -182,4 +182,4 @@ TEST(LowLight, MessagesOfArrays) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::low_light_test

@@ -10,7 +10,7 @@
 #include "support/media_kit.h"
 #include "support/stars_kit.h"
 
-namespace suite {
+namespace suite::mirrored_stars_test {
 namespace {
 
 using namespace test;
@@ -194,4 +194,4 @@ TEST(MirroredStars, SurfacesWithoutImagesAreNamed) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mirrored_stars_test

@@ -7,7 +7,7 @@
 
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::mtf_test {
 namespace {
 
 using test::PlatformKit;
@@ -182,4 +182,4 @@ TEST(Mtf, OfATable) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mtf_test

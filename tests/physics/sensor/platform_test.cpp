@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::platform_test {
 namespace {
 
 using test::on_ground;
@@ -281,4 +281,4 @@ TEST(Platform, DistanceTriggersAreEquallyFarApart) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::platform_test

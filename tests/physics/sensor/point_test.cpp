@@ -9,7 +9,7 @@
 #include "support/media_kit.h"
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::point_test {
 namespace {
 
 using test::PlatformKit;
@@ -144,4 +144,4 @@ TEST(Point, TheTableNamesQuantitiesAndUnits) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::point_test

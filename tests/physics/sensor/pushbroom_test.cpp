@@ -8,7 +8,7 @@
 
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::pushbroom_test {
 namespace {
 
 using test::PlatformKit;
@@ -130,4 +130,4 @@ TEST(PushBroom, ParallaxOfTheBandsIsThatOfTheRelief) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::pushbroom_test

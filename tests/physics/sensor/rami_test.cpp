@@ -15,7 +15,7 @@
 #include "support/message_of.h"
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::rami_test {
 namespace {
 
 using test::PlatformKit;
@@ -383,4 +383,4 @@ TEST(Rami, PeriodicCellIsAGridOfTiles) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::rami_test

@@ -9,7 +9,7 @@
 #include "motion/ephemeris.h"
 #include "support/stars_kit.h"
 
-namespace suite {
+namespace suite::stars_test {
 namespace {
 
 using namespace test;
@@ -303,4 +303,4 @@ TEST(Stars, RowsOfARollingShutterSeeThemAlike) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::stars_test

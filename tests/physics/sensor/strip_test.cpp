@@ -7,7 +7,7 @@
 
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::strip_test {
 namespace {
 
 using test::PlatformKit;
@@ -217,4 +217,4 @@ TEST(Strips, FramesAndMapsAreNotMirrored) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::strip_test

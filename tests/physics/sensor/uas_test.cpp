@@ -7,7 +7,7 @@
 #include "sensor/lens.h"
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::uas_test {
 namespace {
 
 using test::PlatformKit;
@@ -81,4 +81,4 @@ TEST(Uas, TheStarePointStaysSharpAndTheRestIsBlurredByItsVelocity) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::uas_test

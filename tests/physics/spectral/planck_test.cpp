@@ -9,7 +9,7 @@
 #include "math/vec.h"
 #include "spectral/planck.h"
 
-using namespace suite;
+namespace suite::planck_test {
 
 namespace {
 
@@ -117,3 +117,5 @@ TEST(Planck, BrightnessTemperatureInverts) {
       EXPECT_NEAR(brightness_temperature(w, radiance) / t, 1, 1e-12) << w << " " << t;
     }
 }
+
+}  // namespace suite::planck_test

@@ -8,7 +8,7 @@
 #include "spectral/planck.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::maps_test {
 namespace {
 
 // A square of half size 1 at z = 0 with texture coordinates (0, 0) to (1, 1).
@@ -291,4 +291,4 @@ TEST(Maps, TextureKeepsMeanAndCovarianceOfItsFamilyThroughTheRenderer) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::maps_test

@@ -8,7 +8,7 @@
 #include "surface/tangents.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::primitive_uv_test {
 namespace {
 
 struct Case {
@@ -126,4 +126,4 @@ TEST(PrimitiveRadiance, EqualsThatOfItsTessellation) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::primitive_uv_test

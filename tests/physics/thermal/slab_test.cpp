@@ -13,7 +13,7 @@
 #include "spectral/planck.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::slab_test {
 namespace {
 
 using namespace test;
@@ -307,4 +307,4 @@ TEST(Slab, AHugeStepDoesNotRing) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::slab_test

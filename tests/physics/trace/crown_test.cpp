@@ -11,7 +11,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::crown_test {
 namespace {
 
 constexpr double kSunIrradiance = 2, kSkyRadiance = 0.3, kGround = 0.2, kBark = 0.3;
@@ -243,4 +243,4 @@ TEST_P(CrownRadiance, IsThatOfPlainPathTracingInDouble) {
 INSTANTIATE_TEST_SUITE_P(Leaves, CrownRadiance, testing::Values(Leaf{0.45, 0.45}, Leaf{0.5, 0}));
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::crown_test

@@ -10,7 +10,7 @@
 #include "surface/cut_out.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::cut_out_test {
 namespace {
 
 PropertyMap opacity(std::vector<float> values, uint32_t width, Projection projection) {
@@ -160,4 +160,4 @@ TEST(CutOut, WholeScenesAskNobody) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::cut_out_test

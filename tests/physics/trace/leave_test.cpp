@@ -11,7 +11,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::leave_test {
 namespace {
 
 enum class Kind { alone, beside_a_sphere, turned, scaled, mirrored, nested, plane };
@@ -101,4 +101,4 @@ TEST(Leave, NothingMeetsItselfAgain) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::leave_test

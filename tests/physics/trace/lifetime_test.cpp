@@ -8,7 +8,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::lifetime_test {
 namespace {
 
 constexpr double kGround = 0.1, kPanel = 0.8, kOther = 0.4;
@@ -196,4 +196,4 @@ TEST(Lifetime, AnExposureSeesTheMeanOfItsWindow) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lifetime_test

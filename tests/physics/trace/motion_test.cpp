@@ -12,7 +12,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::motion_test {
 namespace {
 
 // A rotor: three blades of 5 m x 0.3 m, turning about z at `rate`, on a hub that `hub` moves.
@@ -354,4 +354,4 @@ TEST(Instances, TilesWaitForTheFirstRay) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::motion_test

@@ -15,7 +15,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::nested_test {
 namespace {
 
 constexpr double kAll = 0, kNothing = INFINITY;  // share as much as saves anything; unfold altogether
@@ -332,4 +332,4 @@ TEST(NestedObjects, AreFoundWithoutUnfolding) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::nested_test

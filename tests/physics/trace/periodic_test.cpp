@@ -7,7 +7,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::periodic_test {
 namespace {
 
 std::shared_ptr<Scene> spheres(int copies) {
@@ -123,4 +123,4 @@ TEST(Periodic, WhiteCellReturnsWhatItGets) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::periodic_test

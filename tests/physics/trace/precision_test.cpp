@@ -11,7 +11,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::precision_test {
 namespace {
 
 struct Setting {
@@ -162,4 +162,4 @@ TEST(Precision, CoherentPacketsMissNoSheetWhereTheyBegin) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::precision_test

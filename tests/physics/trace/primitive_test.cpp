@@ -12,7 +12,7 @@
 #include "trace/primitive_hit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::primitive_test {
 namespace {
 
 using Surface2 = std::function<Vec3(double, double)>;
@@ -228,4 +228,4 @@ TEST(Exact, WavesAreMetOnThemselvesAndFirst) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::primitive_test

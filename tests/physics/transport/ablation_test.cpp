@@ -8,7 +8,7 @@
 #include "tests/support/media_kit.h"
 #include "transport/technique_switches.h"
 
-namespace suite::test {
+namespace suite::test::ablation_test {
 namespace {
 
 using Make = std::shared_ptr<Scene> (*)();
@@ -98,4 +98,4 @@ TEST(Ablation, MeansAreThoseWithoutATechnique) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ablation_test

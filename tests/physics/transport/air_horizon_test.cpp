@@ -15,7 +15,7 @@
 #include "air/air_spec.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::air_horizon_test {
 namespace {
 
 // Means over 20 cm-1 of tape7 where gases hardly absorb (12740 cm-1), W/(m2 sr um).
@@ -61,4 +61,4 @@ TEST(AirHorizon, TracedAirDecidesBetweenTheFieldAndTwoStreams) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::air_horizon_test

@@ -12,7 +12,7 @@
 #include "transport/kernel_meet.h"
 #include "transport/serve.h"
 
-namespace suite {
+namespace suite::algebra_test {
 namespace {
 
 using namespace suite::test;
@@ -143,4 +143,4 @@ TEST(Algebra, ThroughputsAreMultipliedInTheOrderOfThePath) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::algebra_test

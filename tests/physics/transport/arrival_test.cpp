@@ -5,7 +5,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/media_kit.h"
 
-namespace suite {
+namespace suite::arrival_test {
 namespace {
 
 using namespace suite::test;
@@ -124,4 +124,4 @@ TEST(Arrivals, Fog) { expect_fog(1); }
 TEST(Arrivals, WaterIsSlower) { expect_fog(1.33); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::arrival_test

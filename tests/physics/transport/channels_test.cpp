@@ -15,7 +15,7 @@
 #include "transport/serve.h"
 #include "transport/sinks/radiance.h"
 
-namespace suite::test {
+namespace suite::test::channels_test {
 namespace {
 
 constexpr double kReflectance = 0.4, kKelvin = 300;
@@ -115,4 +115,4 @@ TEST(Channels, MayBeSigned) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::channels_test

@@ -7,7 +7,7 @@
 #include "spectral/planck.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::clear_matter_test {
 namespace {
 
 constexpr double kKelvin = 300, kIndex = 1.5;
@@ -128,4 +128,4 @@ TEST(ClearMatter, ShinesByTheIndexThatItsSurfaceBendsBy) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::clear_matter_test

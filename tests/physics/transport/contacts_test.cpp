@@ -8,7 +8,7 @@
 #include "tests/support/media_kit.h"
 #include "tests/support/pipeline_kit.h"
 
-namespace suite::test {
+namespace suite::test::contacts_test {
 namespace {
 
 constexpr double kIndex = 1.5, kReflectance = 0.5, kThick = 0.2;
@@ -91,4 +91,4 @@ TEST(Contacts, WhatDoesNotTouchIsSeenThroughAir) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::contacts_test

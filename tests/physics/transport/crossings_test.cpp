@@ -11,7 +11,7 @@
 #include "tests/support/media_kit.h"
 #include "transport/media/bodies.h"
 
-namespace suite::test {
+namespace suite::test::crossings_test {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -233,4 +233,4 @@ TEST(Crossings, AFrontWithoutEndIsSeen) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::crossings_test

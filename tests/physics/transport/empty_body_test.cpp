@@ -7,7 +7,7 @@
 #include "air/air_spec.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::empty_body_test {
 namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
@@ -140,4 +140,4 @@ TEST(BodyOfTheSame, BallInAPool) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::empty_body_test

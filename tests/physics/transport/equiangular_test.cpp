@@ -9,7 +9,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::equiangular_test {
 namespace {
 
 // sources seen along one ray by 64 equal problems.
@@ -125,4 +125,4 @@ TEST(Equiangular, MeansAreThoseWithout) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::equiangular_test

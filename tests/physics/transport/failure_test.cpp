@@ -13,7 +13,7 @@
 #include "transport/serve.h"
 #include "transport/sinks/radiance.h"
 
-namespace suite {
+namespace suite::failure_test {
 namespace {
 
 using namespace suite::test;
@@ -90,4 +90,4 @@ TEST(Failures, OfModelsThatEndPathsAreCounted) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::failure_test

@@ -14,7 +14,7 @@
 #include "tests/support/model_examples.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::furnace_test {
 namespace {
 
 // Rays onto the middle of a horizontal square, from above and (for transmitters) from below.
@@ -229,4 +229,4 @@ TEST(Nothing, EmptySceneAndNoSourcesAreBlack) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::furnace_test

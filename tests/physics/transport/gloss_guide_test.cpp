@@ -11,7 +11,7 @@
 #include "tests/support/media_kit.h"
 #include "transport/gloss_guide.h"
 
-namespace suite::test {
+namespace suite::test::gloss_guide_test {
 namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
@@ -201,4 +201,4 @@ TEST(GlossGuide, NothingWhereNothingIsGlossy) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::gloss_guide_test

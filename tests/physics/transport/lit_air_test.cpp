@@ -10,7 +10,7 @@
 #include "math/stats.h"
 #include "tests/support/lit_air_kit.h"
 
-namespace suite::test {
+namespace suite::test::lit_air_test {
 namespace {
 
 struct View {
@@ -200,4 +200,4 @@ TEST(LitAir, PartsAddUp) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lit_air_test

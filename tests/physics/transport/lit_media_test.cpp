@@ -13,7 +13,7 @@
 #include "tests/support/lit_air_kit.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::lit_media_test {
 namespace {
 
 void tell(const char* what, const CaptureResult& a, const CaptureResult& b) {
@@ -226,4 +226,4 @@ TEST(LitMedia, ARoomOfOneTemperatureIsAFurnace) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lit_media_test

@@ -11,7 +11,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::lost_light_test {
 namespace {
 
 constexpr double kIndex = 1.33, kReflectance = 0.3, kDepth = 2;
@@ -278,4 +278,4 @@ TEST(LostLight, IsToldBeforeThePathsAreRun) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lost_light_test

@@ -3,7 +3,7 @@
 
 #include "tests/support/radiometry_kit.h"
 
-namespace suite {
+namespace suite::many_suns_test {
 namespace {
 
 using namespace suite::test;
@@ -52,4 +52,4 @@ TEST(ManySuns, BelongToTheirCapture) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::many_suns_test

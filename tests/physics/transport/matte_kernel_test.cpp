@@ -10,7 +10,7 @@
 #include "support/lamps_kit.h"
 #include "support/radiometry_kit.h"
 
-namespace suite {
+namespace suite::matte_kernel_test {
 namespace {
 
 const Curve kGreen({0.3, 0.5, 0.55, 0.7, 1.0}, {0.05, 0.1, 0.2, 0.05, 0.6}, Outside::hold);
@@ -201,4 +201,4 @@ TEST(MatteKernel, IsNotTakenWhereItDoesNotServe) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::matte_kernel_test

@@ -8,7 +8,7 @@
 #include "tests/support/media_kit.h"
 #include "transport/media/flight.h"
 
-namespace suite::test {
+namespace suite::test::media_air_test {
 namespace {
 
 // Two-sided at 4.5 standard errors of 64 independent means: less than 1e-4 a comparison by chance.
@@ -290,4 +290,4 @@ TEST(AirAndMedia, AFogBankInSunlitHazeIsTheIntegral) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::media_air_test

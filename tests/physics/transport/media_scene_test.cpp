@@ -12,7 +12,7 @@
 #include "sqt_fit/aligned_fit.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::media_scene_test {
 namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
@@ -295,4 +295,4 @@ TEST(SqtPhase, FittedHenyeyGreensteinIsHenyeyGreenstein) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::media_scene_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::media_slab_test {
 namespace {
 
 struct Reference {
@@ -241,4 +241,4 @@ INSTANTIATE_TEST_SUITE_P(Problems, DisortSlab, testing::ValuesIn(cases()),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::media_slab_test

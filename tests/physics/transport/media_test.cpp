@@ -9,7 +9,7 @@
 #include "spectral/planck.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::media_test {
 namespace {
 
 // Two-sided at 4.5 standard errors of 64 independent means: less than 1e-4 a comparison by chance.
@@ -434,4 +434,4 @@ TEST(Water, SmallestDeviationOfADispersivePrism) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::media_test

@@ -7,7 +7,7 @@
 #include "tests/support/media_kit.h"
 #include "tests/support/message_of.h"
 
-namespace suite::test {
+namespace suite::test::nested_media_test {
 namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
@@ -270,4 +270,4 @@ TEST(Earth, LetsLightThroughBesideAMedium) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::nested_media_test

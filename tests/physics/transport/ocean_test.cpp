@@ -16,7 +16,7 @@
 #include "tests/support/ocean_reference.h"
 #include "tests/support/ring_light.h"
 
-namespace suite::test {
+namespace suite::test::ocean_test {
 namespace {
 
 constexpr double kIndex = 1.34, kMuSun = 0.5;
@@ -260,4 +260,4 @@ TEST(Ocean, RendersParticlesAsTheReferenceUnderARing) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ocean_test

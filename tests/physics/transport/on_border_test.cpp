@@ -4,7 +4,7 @@
 
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::on_border_test {
 namespace {
 
 constexpr double kHair = 1e-4;  // m
@@ -173,4 +173,4 @@ TEST(OnBorder, OfPanesAndTheGround) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::on_border_test

@@ -25,7 +25,7 @@
 #include "transport/refracted_ray.h"
 #include "transport/serve.h"
 
-namespace suite::test {
+namespace suite::test::ownership_test {
 namespace {
 
 using Kind = ClaimedLight::Kind;
@@ -377,4 +377,4 @@ TEST(Ownership, AClaimWiderThanWhatIsAskedForIsNoticed) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ownership_test

@@ -7,7 +7,7 @@
 #include "tests/support/pipeline_kit.h"
 #include "tests/support/waves_kit.h"
 
-namespace suite::test {
+namespace suite::test::refracted_caustic_test {
 namespace {
 
 constexpr double kReflectance = 1e-3;  // of the floor: what it throws back does not count
@@ -121,4 +121,4 @@ TEST(RefractedCaustic, BehindABallOfGlass) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::refracted_caustic_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/flat_water_kit.h"
 
-namespace suite::test {
+namespace suite::test::refracted_flat_test {
 namespace {
 
 void expect(const FlatWater& w, double half_angle, double zenith, uint32_t paths = 16384, double tolerance = 0.005) {
@@ -64,4 +64,4 @@ TEST(RefractedFlat, Extremes) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::refracted_flat_test

@@ -9,7 +9,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/pipeline_kit.h"
 
-namespace suite::test {
+namespace suite::test::refracted_lamps_test {
 namespace {
 
 constexpr double kIndex = 1.33, kGlass = 1.5;
@@ -186,4 +186,4 @@ TEST(RefractedLamps, UnaskedPointIsTold) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::refracted_lamps_test

@@ -7,7 +7,7 @@
 #include "optics/fresnel.h"
 #include "tests/support/pipeline_kit.h"
 
-namespace suite::test {
+namespace suite::test::refracted_pane_test {
 namespace {
 
 constexpr double kGlass = 1.5, kReflectance = 0.3;
@@ -134,4 +134,4 @@ TEST(RefractedPane, SunAndSky) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::refracted_pane_test

@@ -8,7 +8,7 @@
 #include "motion/track.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::refractors_move_test {
 namespace {
 
 constexpr TimeWindow kOpen{0, 1};
@@ -114,4 +114,4 @@ TEST(RefractorsMove, TheBrightSpotOfABall) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::refractors_move_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::side_flights_test {
 namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
@@ -101,4 +101,4 @@ TEST(SideFlights, OfTwoScatterings) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::side_flights_test

@@ -13,7 +13,7 @@
 #include "tests/support/message_of.h"
 #include "tests/support/stokes_kit.h"
 
-namespace suite::test {
+namespace suite::test::stokes_air_test {
 namespace {
 
 const char* long_run() { return std::getenv("SUITE_LONG"); }
@@ -196,4 +196,4 @@ TEST(StokesAir, HazeCountsAsDepolarised) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stokes_air_test

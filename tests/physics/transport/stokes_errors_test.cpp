@@ -4,7 +4,7 @@
 #include "math/warps.h"
 #include "tests/support/stokes_kit.h"
 
-namespace suite::test {
+namespace suite::test::stokes_errors_test {
 namespace {
 
 // 1000 pixels see the same with numbers of their own, of a fixed seed: a share of 0.95 has a standard error of 0.7 %,
@@ -118,4 +118,4 @@ TEST(StokesErrors, ADepolarisingWallShowsNoDegreeBeyondItsInterval) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stokes_errors_test

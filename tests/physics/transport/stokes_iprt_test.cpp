@@ -11,7 +11,7 @@
 #include "math/sampling.h"
 #include "tests/support/stokes_kit.h"
 
-namespace suite::test {
+namespace suite::test::stokes_iprt_test {
 namespace {
 
 // Standard errors of 8 groups: Student's t of 7 degrees is beyond 12 with a probability of 6e-6; its square has a mean
@@ -179,4 +179,4 @@ TEST(Stokes, RowsOfNatrajAgreeWithPaths) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stokes_iprt_test

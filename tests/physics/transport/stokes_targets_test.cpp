@@ -6,7 +6,7 @@
 #include "sensor/degree_target.h"
 #include "tests/support/stokes_kit.h"
 
-namespace suite::test {
+namespace suite::test::stokes_targets_test {
 namespace {
 
 constexpr uint32_t kColumns = 12, kRows = 12;
@@ -202,4 +202,4 @@ TEST(StokesTargets, HoldBesideThoseOfRadiance) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stokes_targets_test

@@ -15,7 +15,7 @@
 #include "transport/stokes_throughputs.h"
 #include "transport/technique_switches.h"
 
-namespace suite::test {
+namespace suite::test::stokes_techniques_test {
 namespace {
 
 const double kSunAngle = 55 * kDegree;
@@ -287,4 +287,4 @@ TEST(StokesTechniques, MeansAreThoseWithoutATechnique) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stokes_techniques_test

@@ -11,7 +11,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/stokes_kit.h"
 
-namespace suite::test {
+namespace suite::test::stokes_test {
 namespace {
 
 // Standard errors of 4 or 8 groups of samples: Student's t of 3 degrees is beyond 12 with a probability of 1.2e-3, of 7
@@ -365,4 +365,4 @@ TEST(Stokes, AThinLayerOfAirScattersOnce) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stokes_test

@@ -7,7 +7,7 @@
 #include "spectral/planck.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::temperature_truth_test {
 namespace {
 
 constexpr double kLow = 9.95, kHigh = 10.05;
@@ -192,4 +192,4 @@ TEST(TemperatureTruth, NothingWhereNothingIsWarm) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::temperature_truth_test

@@ -7,7 +7,7 @@
 #include "spectral/planck.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::truth_test {
 namespace {
 
 void expect_mean(const CaptureResult& r, double truth, size_t problem = 0) {
@@ -139,4 +139,4 @@ TEST(Cavity, EffectiveEmissivity) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::truth_test

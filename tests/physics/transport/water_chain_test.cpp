@@ -14,7 +14,7 @@
 #include "tests/support/radiometry_kit.h"
 #include "transport/refracting_sheet.h"
 
-namespace suite::test {
+namespace suite::test::water_chain_test {
 namespace {
 
 constexpr double kIndex = 1.34;
@@ -288,4 +288,4 @@ TEST(WaterChain, KnowsWhereThereIsOneWay) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::water_chain_test

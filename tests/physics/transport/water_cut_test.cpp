@@ -8,7 +8,7 @@
 #include "optics/fresnel.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::water_cut_test {
 namespace {
 
 constexpr double kIndex = 1.33;
@@ -70,4 +70,4 @@ TEST(WaterCut, AtTheSurfaceItself) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::water_cut_test

@@ -10,7 +10,7 @@
 #include "tests/support/media_kit.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::water_energy_test {
 namespace {
 
 constexpr double kIndex = 1.33, kDepth = 1, kKelvin = 300, kWavelength = 10;
@@ -102,4 +102,4 @@ TEST(WaterEnergy, WhatIsAbsorbedIsWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::water_energy_test

@@ -8,7 +8,7 @@
 #include "tests/support/media_kit.h"
 #include "water/waves.h"
 
-namespace suite::test {
+namespace suite::test::water_extremes_test {
 namespace {
 
 constexpr double kIndex = 1.34;
@@ -178,4 +178,4 @@ TEST(WaterExtremes, TheSunThroughWavesOfAStorm) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::water_extremes_test

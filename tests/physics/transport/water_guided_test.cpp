@@ -8,7 +8,7 @@
 #include "tests/support/media_kit.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::water_guided_test {
 namespace {
 
 constexpr double kIndex = 1.34, kDepth = 4, kWide = 10 * kDegree;
@@ -98,4 +98,4 @@ TEST(WaterGuided, SmallSunsMakeLittleNoise) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::water_guided_test

@@ -8,7 +8,7 @@
 #include "optics/fresnel.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::water_irradiance_test {
 namespace {
 
 constexpr double kIndex = 1.34, kAbsorption = 0.3, kBottom = 3, kSun = 40 * kDegree, kSky = 0.2;
@@ -127,4 +127,4 @@ TEST(WaterIrradiance, AtItsExtremes) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::water_irradiance_test

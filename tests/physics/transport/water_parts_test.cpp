@@ -9,7 +9,7 @@
 #include "tests/support/media_kit.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::water_parts_test {
 namespace {
 
 constexpr double kIndex = 1.33, kBed = 0.3, kZenith = 30 * kDegree, kSky = 0.2;
@@ -144,4 +144,4 @@ TEST(WaterParts, ThingsAreNoneOfThem) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::water_parts_test

@@ -12,7 +12,7 @@
 #include "sensor/quality.h"
 #include "tests/support/area_kit.h"
 
-namespace suite::test {
+namespace suite::test::tail_flags_test {
 namespace {
 
 constexpr uint32_t kPaths = 64;
@@ -187,4 +187,4 @@ TEST(TailFlags, StandardErrorsOfAThirdAreNoticed) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::tail_flags_test

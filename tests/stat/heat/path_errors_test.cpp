@@ -9,7 +9,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::path_errors_test {
 namespace {
 
 using namespace test;
@@ -160,4 +160,4 @@ TEST(PathErrors, BalanceClosesAndThreadsDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::path_errors_test

@@ -7,7 +7,7 @@
 #include "math/sampling.h"
 #include "math/stats.h"
 
-namespace suite {
+namespace suite::lamp_images_test {
 namespace {
 
 struct Case {
@@ -89,4 +89,4 @@ TEST(LampImages, AllTogetherMakeOne) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lamp_images_test

@@ -10,7 +10,7 @@
 #include "math/stats.h"
 #include "math/warps.h"
 
-namespace suite {
+namespace suite::light_tree_test {
 namespace {
 
 std::vector<LightBounds> random_lights(size_t n, uint64_t seed) {
@@ -259,4 +259,4 @@ TEST(LightTree, OneLampAndLampsAtOnePlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::light_tree_test

@@ -18,7 +18,7 @@
 #include "tests/support/ring_light.h"
 #include "tests/support/temp_folder.h"
 
-namespace suite::test {
+namespace suite::test::sources_test {
 namespace {
 
 // One more row, before anything asks the table.
@@ -396,4 +396,4 @@ TEST(Sky, ShapesThatDifferByWavelengthStayUnbiased) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::sources_test

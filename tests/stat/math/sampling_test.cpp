@@ -8,7 +8,7 @@
 #include "math/sampling.h"
 #include "math/stats.h"
 
-using namespace suite;
+namespace suite::sampling_test {
 
 namespace {
 
@@ -143,3 +143,5 @@ TEST(StreamStatistics, StudentIntervalsFromFourScramblesCover) {
   EXPECT_NEAR(covered / double{kTrials}, 0.95, 0.0113);
   EXPECT_LT(narrow / double{kTrials}, 0.95 - 0.0113);
 }
+
+}  // namespace suite::sampling_test

@@ -9,7 +9,7 @@
 #include "math/stats.h"
 #include "math/warps.h"
 
-using namespace suite;
+namespace suite::warps_test {
 
 namespace {
 
@@ -130,3 +130,5 @@ TEST(Warps, CornersOfTheSquareStayOnTheSphere) {
         EXPECT_NEAR(length(d), 1, 1e-15);
       }
 }
+
+}  // namespace suite::warps_test

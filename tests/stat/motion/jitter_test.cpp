@@ -9,7 +9,7 @@
 #include "math/sampling.h"
 #include "math/stats.h"
 
-namespace suite {
+namespace suite::jitter_test {
 namespace {
 
 AxisJitter coloured(const Psd& psd) {
@@ -171,4 +171,4 @@ TEST(Jitter, RefusesWhatIsNoSpectrum) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::jitter_test

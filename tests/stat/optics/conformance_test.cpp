@@ -11,7 +11,7 @@
 #include "support/conformance.h"
 #include "support/model_examples.h"
 
-namespace suite {
+namespace suite::conformance_test {
 namespace {
 
 using test::ConformanceOptions;
@@ -202,4 +202,4 @@ TEST(NegativeControl, TotalsWrongByTwoPercentAreRejected) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::conformance_test

@@ -5,7 +5,7 @@
 #include "optics/mixed_model.h"
 #include "support/conformance.h"
 
-namespace suite {
+namespace suite::mixed_model_test {
 namespace {
 
 using test::ConformanceOptions;
@@ -82,4 +82,4 @@ TEST(MixedModel, AWrongShareIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mixed_model_test

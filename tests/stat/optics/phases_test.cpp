@@ -11,7 +11,7 @@
 #include "support/conformance.h"
 #include "support/model_examples.h"
 
-namespace suite {
+namespace suite::phases_test {
 namespace {
 
 constexpr double kSignificance = 1e-3 / 100;
@@ -129,4 +129,4 @@ TEST(Phases, FaultsAreNamed) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::phases_test

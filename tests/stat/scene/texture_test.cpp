@@ -7,7 +7,7 @@
 #include "math/sampling.h"
 #include "scene/texture.h"
 
-namespace suite {
+namespace suite::texture_test {
 namespace {
 
 constexpr size_t kBands = 6;
@@ -87,4 +87,4 @@ TEST(Texture, FaultsAreTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::texture_test

@@ -9,7 +9,7 @@
 #include "math/sampling.h"
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::energy_test {
 namespace {
 
 // mean of w / pdf, with weights spoilt by a factor for the control.
@@ -61,4 +61,4 @@ TEST(SqtEnergyControl, HalfAPercentIsSeen) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::energy_test

@@ -9,7 +9,7 @@
 #include "math/warps.h"
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::verbs_test {
 namespace {
 
 using test::Analytic;
@@ -152,4 +152,4 @@ TEST(VerbsControl, TwoPercentAreRejected) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::verbs_test

@@ -8,7 +8,7 @@
 #include "sqt/reciprocity.h"
 #include "sqt_fit/paper_fit.h"
 
-namespace suite {
+namespace suite::check_test {
 namespace {
 
 std::shared_ptr<const sqt::Bundle> glossy() {
@@ -114,4 +114,4 @@ TEST(InspectCheck, RejectsBadValuesMassesAndOverlaps) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::check_test

@@ -10,7 +10,7 @@
 #include "study/compare.h"
 #include "tests/support/area_kit.h"
 
-namespace suite::test {
+namespace suite::test::stop_rules_test {
 namespace {
 
 struct Bias {
@@ -125,4 +125,4 @@ TEST(Coverage, StandardErrorsThatAreHalvedAreNoticed) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::stop_rules_test

@@ -8,7 +8,7 @@
 #include "math/stats.h"
 #include "tests/support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::paper_method_test {
 namespace {
 
 std::unique_ptr<RaySensor> looking_down(size_t problems, uint32_t paths) {
@@ -150,4 +150,4 @@ TEST(PaperMethod, RefusesMoreLampsThanANodeHolds) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::paper_method_test

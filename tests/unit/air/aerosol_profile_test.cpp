@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace suite {
+namespace suite::aerosol_profile_test {
 namespace {
 
 TEST(AerosolProfile, VisibilityIsKoschmieders) {
@@ -63,4 +63,4 @@ TEST(AerosolProfile, DepthIsTheIntegralOfExtinction) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::aerosol_profile_test

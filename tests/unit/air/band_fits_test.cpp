@@ -7,7 +7,7 @@
 
 #include "air/lowtran.h"
 
-namespace suite {
+namespace suite::band_fits_test {
 namespace {
 
 double through(size_t law, double s) {
@@ -69,4 +69,4 @@ TEST(BandFits, WeakLinesTakeLessThanLowtransDo) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::band_fits_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace suite {
+namespace suite::beam_table_test {
 namespace {
 
 constexpr double kRadius = 6371000, kGround = -200;
@@ -82,4 +82,4 @@ TEST(BeamTable, ShadowOfTheEarth) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::beam_table_test

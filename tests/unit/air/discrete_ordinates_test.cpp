@@ -10,7 +10,7 @@
 
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::discrete_ordinates_test {
 namespace {
 
 using testing::HasSubstr;
@@ -128,4 +128,4 @@ TEST(DiscreteOrdinates, EndsOrdersWhenTheyNoLongerCount) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::discrete_ordinates_test

@@ -9,7 +9,7 @@
 
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::gases_test {
 namespace {
 
 using testing::HasSubstr;
@@ -164,4 +164,4 @@ TEST(Gases, BuiltinContinuumInTheOtherForm) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::gases_test

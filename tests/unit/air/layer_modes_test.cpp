@@ -7,7 +7,7 @@
 
 #include "air/ordinate_angles.h"
 
-namespace suite::ordinates {
+namespace suite::ordinates::layer_modes_test {
 namespace {
 
 // sinh(k y) / sinh(k T), for any size of k T.
@@ -98,4 +98,4 @@ TEST(LayerModes, RefusesWhatIsNoPhaseFunction) {
 }
 
 }  // namespace
-}  // namespace suite::ordinates
+}  // namespace suite::ordinates::layer_modes_test

@@ -10,7 +10,7 @@
 #include "math/vec.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::lines_test {
 namespace {
 
 using testing::HasSubstr;
@@ -188,4 +188,4 @@ TEST(Lines, RefusesWhatCannotBeBaked) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lines_test

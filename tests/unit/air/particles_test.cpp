@@ -13,7 +13,7 @@
 #include "math/vec.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::particles_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -202,4 +202,4 @@ TEST(ParticlePhase, IsSampledAsItsDensitySays) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::particles_test

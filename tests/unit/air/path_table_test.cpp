@@ -9,7 +9,7 @@
 #include "math/vec.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::path_table_test {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST(PathTable, Faults) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::path_table_test

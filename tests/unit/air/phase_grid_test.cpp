@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "math/vec.h"
 
-namespace suite {
+namespace suite::phase_grid_test {
 namespace {
 
 TEST(PhaseGrid, AscendsOverAllCosines) {
@@ -68,4 +68,4 @@ TEST(PhaseGrid, TakesAUsersTable) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::phase_grid_test

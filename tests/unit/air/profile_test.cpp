@@ -5,7 +5,7 @@
 
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::profile_test {
 namespace {
 
 using testing::HasSubstr;
@@ -119,4 +119,4 @@ TEST(Profile, SaturatedWater) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::profile_test

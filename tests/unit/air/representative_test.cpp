@@ -7,7 +7,7 @@
 
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::representative_test {
 namespace {
 
 using testing::HasSubstr;
@@ -52,4 +52,4 @@ TEST(Representative, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::representative_test

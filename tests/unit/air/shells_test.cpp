@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::shells_test {
 namespace {
 
 __extension__ typedef __float128 Quad;
@@ -274,4 +274,4 @@ TEST(Shells, DirectionsNearTheCentre) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::shells_test

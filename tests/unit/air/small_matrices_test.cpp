@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace suite::small {
+namespace suite::small::small_matrices_test {
 namespace {
 
 using Matrix = std::vector<double>;
@@ -112,4 +112,4 @@ TEST(SmallMatrices, SmallEigenvaluesOfGradedMatricesKeepTheirDigits) {
 }
 
 }  // namespace
-}  // namespace suite::small
+}  // namespace suite::small::small_matrices_test

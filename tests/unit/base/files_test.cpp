@@ -11,7 +11,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-using namespace suite;
+namespace suite::files_test {
 using testing::HasSubstr;
 
 TEST(Files, WhatIsWrittenIsRead) {
@@ -161,3 +161,5 @@ TEST(Files, Sha256KnownAnswers) {
   EXPECT_EQ(sha256(std::string_view("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256(std::string_view("")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
+
+}  // namespace suite::files_test

@@ -8,7 +8,7 @@
 #include "base/version.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::late_part_test {
 namespace {
 using testing::AllOf;
 using testing::HasSubstr;
@@ -36,4 +36,4 @@ TEST(LatePart, WithoutTheSymbolIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::late_part_test

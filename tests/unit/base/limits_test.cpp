@@ -24,7 +24,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::limits_test {
 namespace {
 
 using testing::HasSubstr;
@@ -223,4 +223,4 @@ TEST(LimitsOfOutputs, InputsAreNotReplaced) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::limits_test

@@ -12,7 +12,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::mapped_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(SpillFile, SaysWhereThereIsNoRoom) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mapped_file_test

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 
-using namespace suite;
+namespace suite::parallel_test {
 
 TEST(Parallel, EveryIndexOnceForAnyGrainAndThreadCount) {
   for (const int count : {1, 2, 5, 0}) {
@@ -53,3 +53,5 @@ TEST(Parallel, TheFirstExceptionIsRethrownAndTheNextLoopWorks) {
   parallel_for(0, 10, 1, [&](size_t, size_t) { ++n; });
   EXPECT_EQ(n, 10);
 }
+
+}  // namespace suite::parallel_test

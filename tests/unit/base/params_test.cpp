@@ -7,7 +7,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-using namespace suite;
+namespace suite::params_test {
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -288,3 +288,5 @@ TEST(Settings, FaultsAreToldAtTheirPlace) {
   EXPECT_THAT(message_of([&] { p.at("sensors")[0].reject_unread(); }),
               HasSubstr("unknown key 'pahts'; did you mean 'paths'?"));
 }
+
+}  // namespace suite::params_test

@@ -6,7 +6,7 @@
 
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::registry_test {
 namespace {
 using testing::HasSubstr;
 
@@ -72,4 +72,4 @@ TEST(Registry, HoldsParametersToTheirRanges) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::registry_test

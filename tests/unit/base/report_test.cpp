@@ -10,7 +10,7 @@
 #include "base/progress.h"
 #include "base/report.h"
 
-using namespace suite;
+namespace suite::report_test {
 using testing::HasSubstr;
 using testing::Not;
 
@@ -166,3 +166,5 @@ TEST(Progress, HumanNumbers) {
   EXPECT_EQ(human_count(12345), "12.3 k");
   EXPECT_EQ(human_bytes(1.234e6), "1.23 MB");
 }
+
+}  // namespace suite::report_test

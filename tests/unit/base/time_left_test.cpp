@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace suite {
+namespace suite::time_left_test {
 namespace {
 
 constexpr TimeLeft::Bounds kLeast{TimeLeft::Total::least};
@@ -59,4 +59,4 @@ TEST(TimeLeft, ManyReportsSayTheSame) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::time_left_test

@@ -10,7 +10,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::tracked_inputs_test {
 namespace {
 
 class TrackedInputsOf : public testing::Test {
@@ -70,4 +70,4 @@ TEST_F(TrackedInputsOf, TheHashOfAllDoesNotDependOnTheOrder) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::tracked_inputs_test

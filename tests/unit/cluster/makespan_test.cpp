@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace suite::cluster {
+namespace suite::cluster::makespan_test {
 namespace {
 
 constexpr LinkCosts kFree{0, 0, 1e300, 1e300};
@@ -68,4 +68,4 @@ TEST(Makespan, TellingGoesByATree) {
 }
 
 }  // namespace
-}  // namespace suite::cluster
+}  // namespace suite::cluster::makespan_test

@@ -7,7 +7,7 @@
 
 #include "cluster/message.h"
 
-namespace suite::cluster {
+namespace suite::cluster::pieces_test {
 namespace {
 
 struct Job {
@@ -112,4 +112,4 @@ TEST(Message, brings_the_rows_of_its_scrambles_and_no_others) {
 }
 
 }  // namespace
-}  // namespace suite::cluster
+}  // namespace suite::cluster::pieces_test

@@ -11,7 +11,7 @@
 #include "math/vec.h"
 #include "support/even_air.h"
 
-namespace suite {
+namespace suite::air_correction_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -212,4 +212,4 @@ TEST(AirCorrection, FaultsAreNamed) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_correction_test

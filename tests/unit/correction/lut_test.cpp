@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace suite {
+namespace suite::lut_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -99,4 +99,4 @@ TEST(Lut, MoreOfAnythingLetsLessThrough) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lut_test

@@ -11,7 +11,7 @@
 #include "spectral/planck.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::counting_test {
 namespace {
 
 constexpr double kNs = 1e-9;
@@ -176,4 +176,4 @@ TEST(Counting, Avalanches) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::counting_test

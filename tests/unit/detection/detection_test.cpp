@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/response_kit.h"
 
-namespace suite {
+namespace suite::detection_test {
 namespace {
 
 using namespace test;
@@ -212,4 +212,4 @@ TEST(Detection, GpsTime) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::detection_test

@@ -9,7 +9,7 @@
 #include "detection/waveform.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::pulse_test {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(Waveform, ShortestAndLongestPulse) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::pulse_test

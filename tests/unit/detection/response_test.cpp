@@ -12,7 +12,7 @@
 #include "support/message_of.h"
 #include "support/response_kit.h"
 
-namespace suite {
+namespace suite::response_test {
 namespace {
 
 using namespace test;
@@ -135,4 +135,4 @@ TEST(Gates, FollowWhatCameBack) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::response_test

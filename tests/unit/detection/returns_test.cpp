@@ -11,7 +11,7 @@
 #include "math/variates.h"
 #include "spectral/planck.h"
 
-namespace suite {
+namespace suite::returns_test {
 namespace {
 
 constexpr double kNs = 1e-9;
@@ -137,4 +137,4 @@ TEST(Decompose, PhotonsByExpectationAndMaximisation) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::returns_test

@@ -7,7 +7,7 @@
 #include "estimate/plan.h"
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::accumulators_test {
 namespace {
 
 TEST(Deal, counts_what_it_deals_and_never_repeats_a_point) {
@@ -252,4 +252,4 @@ TEST(Goal, budget_over_capture) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::accumulators_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace suite {
+namespace suite::pooled_errors_test {
 namespace {
 
 constexpr uint32_t kSide = 64;
@@ -146,4 +146,4 @@ TEST(PooledErrors, OneProblemAndOneRow) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::pooled_errors_test

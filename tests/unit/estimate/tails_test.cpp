@@ -8,7 +8,7 @@
 
 #include "sensor/quality.h"
 
-namespace suite {
+namespace suite::tails_test {
 namespace {
 
 constexpr uint32_t kSide = 21, kPaths = 64;
@@ -170,4 +170,4 @@ TEST(Quality, BitsAreNamedOnceAndCounted) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::tails_test

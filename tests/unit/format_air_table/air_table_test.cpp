@@ -6,7 +6,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_air_table_air_table_test {
 namespace {
 
 using testing::HasSubstr;
@@ -56,4 +56,4 @@ TEST(AirTable, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_air_table_air_table_test

@@ -8,7 +8,7 @@
 #include "support/fuzz.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_assimp_long_numbers_test {
 namespace {
 
 using testing::HasSubstr;
@@ -45,4 +45,4 @@ TEST(LongNumbers, Fbx) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_assimp_long_numbers_test

@@ -10,7 +10,7 @@
 #include "support/city_kit.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_city_city_test {
 namespace {
 
 using test::small_city;
@@ -208,4 +208,4 @@ TEST(City, FormatsAreKnownByNameAndContent) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_city_city_test

@@ -7,7 +7,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_curve_read_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -240,4 +240,4 @@ TEST_F(CurveFile, LibrarySpectraOfTwoInstruments) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_curve_read_test

@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_curve_response_files_test {
 namespace {
 
 using testing::AllOf;
@@ -87,4 +87,4 @@ TEST_F(MadeResponses, FaultsNameTheVariableAndTheCure) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_curve_response_files_test

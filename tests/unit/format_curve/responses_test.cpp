@@ -7,7 +7,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_curve_responses_test {
 namespace {
 
 using testing::AllOf;
@@ -67,4 +67,4 @@ TEST_F(Responses, FaultsHaveTheirPlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_curve_responses_test

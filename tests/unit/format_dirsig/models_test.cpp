@@ -8,7 +8,7 @@
 #include "support/dirsig_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_dirsig_models_test {
 
 namespace {
 
@@ -166,4 +166,4 @@ TEST_F(DirsigModels, WeatherThatIsMissingOrDoesNotFitIsTold) {
 
 }  // namespace
 
-}  // namespace suite
+}  // namespace suite::format_dirsig_models_test

@@ -10,7 +10,7 @@
 #include "support/dirsig_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_dirsig_nothing_lost_test {
 
 namespace {
 
@@ -373,4 +373,4 @@ TEST_F(DirsigOddFiles, HavePopulations) {
 
 }  // namespace
 
-}  // namespace suite
+}  // namespace suite::format_dirsig_nothing_lost_test

@@ -8,7 +8,7 @@
 #include "support/dirsig_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_dirsig_scene_test {
 
 namespace {
 
@@ -292,4 +292,4 @@ TEST_F(DirsigScene, RealFilesAreAccountedFor) {
 
 }  // namespace
 
-}  // namespace suite
+}  // namespace suite::format_dirsig_scene_test

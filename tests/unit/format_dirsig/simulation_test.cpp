@@ -7,7 +7,7 @@
 #include "support/dirsig_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_dirsig_simulation_test {
 
 namespace {
 
@@ -205,4 +205,4 @@ TEST_F(DirsigSimulation, ScenesAreShifted) {
 
 }  // namespace
 
-}  // namespace suite
+}  // namespace suite::format_dirsig_simulation_test

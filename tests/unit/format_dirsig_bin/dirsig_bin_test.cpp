@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_dirsig_bin_dirsig_bin_test {
 namespace {
 
 using testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST(DirsigBin, WhatIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_dirsig_bin_dirsig_bin_test

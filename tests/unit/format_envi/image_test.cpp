@@ -12,7 +12,7 @@
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 
-using namespace suite;
+namespace suite::format_envi_image_test {
 using testing::HasSubstr;
 
 namespace {
@@ -288,3 +288,5 @@ TEST(Envi, GdalSeesClassesAndColours) {
               HasSubstr("ColorInterp=Palette\n  NoData Value=0\n  Categories:\n      0: nothing\n      1: grass; wet"));
   EXPECT_THAT(out, HasSubstr("1: 10,200,30,255"));
 }
+
+}  // namespace suite::format_envi_image_test

@@ -11,7 +11,7 @@
 #include "tests/support/message_of.h"
 #include "tests/support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_four_curve_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(FourCurve, Faults) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_four_curve_read_test

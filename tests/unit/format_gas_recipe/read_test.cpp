@@ -7,7 +7,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_gas_recipe_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST_F(Recipe, FaultsAreToldAtTheirPlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_gas_recipe_read_test

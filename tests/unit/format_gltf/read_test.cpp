@@ -9,7 +9,7 @@
 #include "support/gltf_kit.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_gltf_read_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -279,4 +279,4 @@ TEST(Gltf, FaultsHaveTheirPlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_gltf_read_test

@@ -7,7 +7,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite::h5 {
+namespace suite::h5::format_hdf5_elsewhere_test {
 namespace {
 
 using testing::HasSubstr;
@@ -86,4 +86,4 @@ TEST_F(Hostile, ClaimsAreHeldAgainstTheFile) {
 }
 
 }  // namespace
-}  // namespace suite::h5
+}  // namespace suite::h5::format_hdf5_elsewhere_test

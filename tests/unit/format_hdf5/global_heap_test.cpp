@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-namespace suite {
+namespace suite::format_hdf5_global_heap_test {
 namespace {
 
 // A heap of 64 bytes after 16 others: one object of 5 bytes, then what is free.
@@ -33,4 +33,4 @@ TEST(GlobalHeap, SizesThatLeadNowhereAreFound) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_hdf5_global_heap_test

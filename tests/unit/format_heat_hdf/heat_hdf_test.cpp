@@ -12,7 +12,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_heat_hdf_heat_hdf_test {
 namespace {
 
 using namespace test;
@@ -101,4 +101,4 @@ TEST(HeatHdf, Messages) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_heat_hdf_heat_hdf_test

@@ -12,7 +12,7 @@
 #include "support/searched_scene.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_heat_hdf_operator_test {
 namespace {
 
 using namespace test;
@@ -148,4 +148,4 @@ TEST(HeatOperatorHdf, Messages) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_heat_hdf_operator_test

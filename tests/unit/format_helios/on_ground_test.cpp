@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace suite::helios {
+namespace suite::helios::format_helios_on_ground_test {
 namespace {
 
 using testing::ElementsAre;
@@ -96,4 +96,4 @@ TEST(HeliosOnGround, PointsAndWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace suite::helios
+}  // namespace suite::helios::format_helios_on_ground_test

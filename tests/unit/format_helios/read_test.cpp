@@ -13,7 +13,7 @@
 #include "support/helios_kit.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_helios_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -142,4 +142,4 @@ TEST(Helios, FaultsHaveTheirLine) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_helios_read_test

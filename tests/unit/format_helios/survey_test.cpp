@@ -13,7 +13,7 @@
 #include "lidar/lidar_text.h"
 #include "lidar/pulse_train.h"
 
-namespace suite {
+namespace suite::format_helios_survey_test {
 namespace {
 
 using testing::HasSubstr;
@@ -343,4 +343,4 @@ TEST(HeliosSurvey, PublicSurveys) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_helios_survey_test

@@ -4,7 +4,7 @@
 #include "formats/hitran/hitran.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_hitran_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -65,4 +65,4 @@ TEST(Hitran, PartitionSumsAndContinuum) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_hitran_read_test

@@ -11,7 +11,7 @@
 #include "math/vec.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_ies_ies_test {
 namespace {
 
 using testing::HasSubstr;
@@ -128,4 +128,4 @@ TEST(Ies, TruncatedAnywhereIsAnError) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_ies_ies_test

@@ -9,7 +9,7 @@
 #include "support/las_kit.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_las_las_test {
 namespace {
 
 using testing::HasSubstr;
@@ -109,4 +109,4 @@ TEST(Las, FaultsHaveTheirByte) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_las_las_test

@@ -12,7 +12,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_las_write_las_write_test {
 namespace {
 
 using testing::HasSubstr;
@@ -139,4 +139,4 @@ TEST(LasWrite, ReferenceSystems) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_las_write_las_write_test

@@ -8,7 +8,7 @@
 #include "math/vec.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::format_libradtran_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -117,4 +117,4 @@ TEST(Libradtran, Faults) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_libradtran_read_test

@@ -6,7 +6,7 @@
 #include "formats/lidar_hdf/waveforms.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_lidar_hdf_lidar_hdf_test {
 namespace {
 
 std::vector<double> values(const h5::Foreign& file, const std::string& name) { return file.table(name).values; }
@@ -54,4 +54,4 @@ TEST(LidarHdf, Photons) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_lidar_hdf_lidar_hdf_test

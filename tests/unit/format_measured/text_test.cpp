@@ -12,7 +12,7 @@
 #include "formats/samples/samples.h"
 #include "support/tensor_file.h"
 
-namespace suite {
+namespace suite::format_measured_text_test {
 namespace {
 
 template <class Parse>
@@ -173,4 +173,4 @@ TEST(Measured, TellsFormatsApart) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_measured_text_test

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/files.h"
 
-namespace suite {
+namespace suite::format_merl_merl_test {
 namespace {
 
 // f depends on both directions and is neither reciprocal nor mirror symmetric.
@@ -134,4 +134,4 @@ TEST(Merl, RefusesWrongFiles) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_merl_merl_test

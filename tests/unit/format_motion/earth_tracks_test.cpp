@@ -9,7 +9,7 @@
 #include "motion/track_record.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_motion_earth_tracks_test {
 namespace {
 
 using testing::HasSubstr;
@@ -236,4 +236,4 @@ TEST(EarthTracks, FaultsAreTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_motion_earth_tracks_test

@@ -5,7 +5,7 @@
 #include "formats/motion/track_files.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_motion_fcd_test {
 namespace {
 
 using testing::HasSubstr;
@@ -134,4 +134,4 @@ TEST(Fcd, FaultsAreToldWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_motion_fcd_test

@@ -9,7 +9,7 @@
 #include "base/files.h"
 #include "formats/tle/tle.h"
 
-namespace suite {
+namespace suite::format_motion_read_test {
 namespace {
 
 MotionContext earth() {
@@ -204,4 +204,4 @@ TEST(MotionFormat, Jitter) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_motion_read_test

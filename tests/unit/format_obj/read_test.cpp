@@ -8,7 +8,7 @@
 #include "scene/issues.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_obj_read_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST(Obj, FaultsAreLocated) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_obj_read_test

@@ -9,7 +9,7 @@
 #include "optics/phases/henyey_greenstein.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_particles_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -186,4 +186,4 @@ const Bad kBad[] = {
 INSTANTIATE_TEST_SUITE_P(All, BadParticles, testing::ValuesIn(kBad));
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_particles_read_test

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 
-namespace suite {
+namespace suite::format_picture_picture_test {
 namespace {
 
 size_t count(const Canvas& c, Rgb color) {
@@ -69,4 +69,4 @@ TEST(Picture, PlotShowsItsLines) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_picture_picture_test

@@ -4,7 +4,7 @@
 #include "formats/profile/profile.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_profile_read_test {
 namespace {
 
 using testing::ElementsAre;
@@ -78,4 +78,4 @@ TEST(Profile, RefusesWithThePlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_profile_read_test

@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_pulse_pulse_test {
 namespace {
 
 using testing::HasSubstr;
@@ -56,4 +56,4 @@ TEST(PulseFile, PulsesOfGedi) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_pulse_pulse_test

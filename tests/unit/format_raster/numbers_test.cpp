@@ -10,7 +10,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_raster_numbers_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -66,4 +66,4 @@ TEST(RasterNumbers, FewerBitsThanTheTypeHas) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_raster_numbers_test

@@ -7,7 +7,7 @@
 #include "support/message_of.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::format_raster_style_test {
 namespace {
 
 using testing::HasSubstr;
@@ -66,4 +66,4 @@ TEST_F(RasterStyleTest, TwoBandsAreNoPicture) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_raster_style_test

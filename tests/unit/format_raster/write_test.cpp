@@ -15,7 +15,7 @@
 #include "support/message_of.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::format_raster_write_test {
 namespace {
 
 using testing::HasSubstr;
@@ -141,4 +141,4 @@ TEST_F(RasterWrite, FilesDoNotKnowTheHour) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_raster_write_test

@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite::test {
+namespace suite::test::format_render_state_parts_test {
 namespace {
 
 using testing::HasSubstr;
@@ -206,4 +206,4 @@ TEST(Share, deals_every_block_once) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::format_render_state_parts_test

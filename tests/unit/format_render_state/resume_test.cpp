@@ -13,7 +13,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite::test {
+namespace suite::test::format_render_state_resume_test {
 namespace {
 
 GridRun run_whole(StateStore* store, const Budget& budget, uint32_t paths, double target, bool lacks = false,
@@ -135,4 +135,4 @@ TEST(RenderState, refuses_what_is_no_state) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::format_render_state_resume_test

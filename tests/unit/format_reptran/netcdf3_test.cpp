@@ -5,7 +5,7 @@
 #include "support/message_of.h"
 #include "support/netcdf3_kit.h"
 
-namespace suite {
+namespace suite::format_reptran_netcdf3_test {
 namespace {
 
 using testing::ElementsAre;
@@ -44,4 +44,4 @@ TEST(NetCdf3, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_reptran_netcdf3_test

@@ -7,7 +7,7 @@
 #include "support/netcdf3_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_reptran_read_test {
 namespace {
 
 using testing::ElementsAre;
@@ -42,4 +42,4 @@ TEST(Reptran, BandsAndGas) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_reptran_read_test

@@ -8,7 +8,7 @@
 #include "support/response_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_response_response_test {
 namespace {
 
 using namespace test;
@@ -107,4 +107,4 @@ TEST(ResponseFile, WhatIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_response_response_test

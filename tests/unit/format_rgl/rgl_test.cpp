@@ -13,7 +13,7 @@
 #include "formats/merl/merl.h"
 #include "support/tensor_file.h"
 
-namespace suite {
+namespace suite::format_rgl_rgl_test {
 namespace {
 
 using test::small_rgl;
@@ -157,4 +157,4 @@ TEST(Rgl, ShippedSatinIsIsotropicAndBilateral) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_rgl_rgl_test

@@ -9,7 +9,7 @@
 #include "sqt_fit/swapped.h"
 #include "support/sqt_examples.h"
 
-namespace suite {
+namespace suite::format_rgl_rgl_write_test {
 namespace {
 
 // Cosine-weighted mean difference over even directions up to 80 deg, relative.
@@ -65,4 +65,4 @@ TEST(RglWrite, RefusesWhatIsNoBrdf) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_rgl_rgl_write_test

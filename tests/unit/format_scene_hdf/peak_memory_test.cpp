@@ -17,7 +17,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_hdf_peak_memory_test {
 namespace {
 
 constexpr double kMost = 300;  // MiB, of which the program and its libraries are some 50
@@ -80,4 +80,4 @@ TEST(PeakMemory, OfASceneThatClaimsTooMuch) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_hdf_peak_memory_test

@@ -9,7 +9,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_hdf_scene_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -388,4 +388,4 @@ TEST_F(SceneHdf, UnwritablePlaceLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_hdf_scene_test

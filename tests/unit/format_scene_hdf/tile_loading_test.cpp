@@ -11,7 +11,7 @@
 #include "support/temp_folder.h"
 #include "trace/tracer.h"
 
-namespace suite {
+namespace suite::format_scene_hdf_tile_loading_test {
 namespace {
 
 constexpr int kTowns = 30;
@@ -113,4 +113,4 @@ TEST(TileLoading, DamageIsAnErrorAtTheFirstRay) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_hdf_tile_loading_test

@@ -12,7 +12,7 @@
 #include "support/temp_folder.h"
 #include "trace/tracer.h"
 
-namespace suite {
+namespace suite::format_scene_hdf_tile_memory_test {
 namespace {
 
 constexpr int kTowns = 12;
@@ -205,4 +205,4 @@ TEST(PlainScene, ThatWasCutIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_hdf_tile_memory_test

@@ -9,7 +9,7 @@
 #include "scene/issues.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_heat_test {
 namespace {
 
 using testing::AllOf;
@@ -104,4 +104,4 @@ TEST_F(HeatInScenes, BesideAClassMapItsFirstMaterialHoldsAndIsAsWarm) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_heat_test

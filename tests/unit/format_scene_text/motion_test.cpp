@@ -11,7 +11,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_motion_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -143,4 +143,4 @@ TEST(TrackRecords, BrokenOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_motion_test

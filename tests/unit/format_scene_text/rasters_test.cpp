@@ -11,7 +11,7 @@
 #include "scene/issues.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_rasters_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -94,4 +94,4 @@ TEST_F(RastersOfScenes, HeightsAreScaledWhereverTheTerrainIs) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_rasters_test

@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_read_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -382,4 +382,4 @@ TEST_F(SceneText, PartsOfMixturesAreWholeMaterials) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_read_test

@@ -12,7 +12,7 @@
 #include "scene/presence.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_schedules_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -119,4 +119,4 @@ TEST_F(Schedules, FaultsAreToldWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_schedules_test

@@ -11,7 +11,7 @@
 #include "support/gltf_kit.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_textures_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -239,4 +239,4 @@ TEST_F(ObjTextures, AreRefusedWhereTheyCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_textures_test

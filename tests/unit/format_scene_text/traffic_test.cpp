@@ -12,7 +12,7 @@
 #include "scene/presence.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_scene_text_traffic_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -95,4 +95,4 @@ TEST_F(Traffic, OneObjectOfAFileIsATrack) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_traffic_test

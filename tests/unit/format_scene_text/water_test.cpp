@@ -9,7 +9,7 @@
 #include "support/temp_folder.h"
 #include "water/sea_water.h"
 
-namespace suite {
+namespace suite::format_scene_text_water_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -112,4 +112,4 @@ TEST_F(WaterText, WindsBeyondWhatWasMeasuredAreTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_scene_text_water_test

@@ -11,7 +11,7 @@
 #include "tests/support/tape7_kit.h"
 #include "tests/support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_sim_text_air_tables_test {
 namespace {
 
 using test::MadeRow;
@@ -217,4 +217,4 @@ TEST_F(AirTables, FaultsAreToldWhereTheyStand) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_sim_text_air_tables_test

@@ -7,7 +7,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_sim_text_heat_test {
 namespace {
 
 using testing::AllOf;
@@ -103,4 +103,4 @@ TEST_F(HeatInSimulations, Messages) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_sim_text_heat_test

@@ -15,7 +15,7 @@
 #include "support/sqt_examples.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_sim_text_sources_test {
 namespace {
 
 SourceSpecs read(const std::string& text, const std::string& file = "x.yaml") {
@@ -278,4 +278,4 @@ TEST(SimSources, DistributionFromAnSqt) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_sim_text_sources_test

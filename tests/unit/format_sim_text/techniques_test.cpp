@@ -10,7 +10,7 @@
 #include "support/temp_folder.h"
 #include "transport/technique_switches.h"
 
-namespace suite {
+namespace suite::format_sim_text_techniques_test {
 namespace {
 
 using testing::AllOf;
@@ -58,4 +58,4 @@ TEST(Techniques, OthersAreRefusedWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_sim_text_techniques_test

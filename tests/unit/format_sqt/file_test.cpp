@@ -9,7 +9,7 @@
 #include "math/warps.h"
 #include "support/sqt_examples.h"
 
-namespace suite {
+namespace suite::format_sqt_file_test {
 namespace {
 
 void expect_same(const sqt::Bundle& a, const sqt::Bundle& b) {
@@ -83,4 +83,4 @@ TEST(SqtFile, MessagesSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_sqt_file_test

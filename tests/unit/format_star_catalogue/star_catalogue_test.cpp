@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_star_catalogue_star_catalogue_test {
 namespace {
 
 using testing::AllOf;
@@ -91,4 +91,4 @@ TEST(StarCatalogue, SaysWhereItIsWrong) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_star_catalogue_star_catalogue_test

@@ -8,7 +8,7 @@
 #include "formats/stl/stl.h"
 #include "scene/issues.h"
 
-namespace suite {
+namespace suite::format_stl_read_test {
 namespace {
 
 SourceMesh parse(const std::string& text) {
@@ -50,4 +50,4 @@ TEST(Stl, BytesBehindTheLastFacetAreTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_stl_read_test

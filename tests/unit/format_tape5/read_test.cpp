@@ -7,7 +7,7 @@
 #include "math/vec.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::format_tape5_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -141,4 +141,4 @@ TEST(Tape5, Faults) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tape5_read_test

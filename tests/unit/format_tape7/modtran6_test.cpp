@@ -6,7 +6,7 @@
 #include "math/vec.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::format_tape7_modtran6_test {
 namespace {
 
 using testing::HasSubstr;
@@ -68,4 +68,4 @@ TEST(Modtran6, Faults) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tape7_modtran6_test

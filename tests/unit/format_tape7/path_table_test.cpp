@@ -10,7 +10,7 @@
 #include "math/vec.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::format_tape7_path_table_test {
 namespace {
 
 using testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST(Tape7PathTable, Faults) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tape7_path_table_test

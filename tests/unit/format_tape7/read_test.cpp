@@ -7,7 +7,7 @@
 #include "math/vec.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::format_tape7_read_test {
 namespace {
 
 using testing::HasSubstr;
@@ -203,4 +203,4 @@ TEST(Tape7, FaultsAreTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tape7_read_test

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "support/sqt_examples.h"
 
-namespace suite {
+namespace suite::format_tensor_tree_tensor_tree_test {
 namespace {
 
 struct Node {
@@ -195,4 +195,4 @@ TEST(TensorTree, RefusesWhatIsNoBrdf) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_tensor_tree_tensor_tree_test

@@ -6,7 +6,7 @@
 #include "scene/issues.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::format_voxel_amapvox_test {
 namespace {
 
 using testing::HasSubstr;
@@ -81,4 +81,4 @@ TEST(AmapVox, FaultsHaveTheirLine) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_voxel_amapvox_test

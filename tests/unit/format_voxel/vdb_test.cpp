@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_voxel_vdb_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -84,4 +84,4 @@ TEST_F(Vdb, WhatIsNoFogIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_voxel_vdb_test

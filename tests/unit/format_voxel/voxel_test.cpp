@@ -10,7 +10,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::format_voxel_voxel_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -101,4 +101,4 @@ TEST_F(VoxelFile, VdbIsRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_voxel_voxel_test

@@ -2,7 +2,7 @@
 #include "formats/weather/weather.h"
 #include "support/weather_kit.h"
 
-namespace suite {
+namespace suite::format_weather_networks_test {
 namespace {
 
 constexpr Geodetic kAlamosa{37.70, -105.92, 2317};
@@ -119,4 +119,4 @@ TEST(BsrnMonth, RefusesWithThePlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_weather_networks_test

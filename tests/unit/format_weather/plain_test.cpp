@@ -4,7 +4,7 @@
 #include "support/temp_folder.h"
 #include "support/weather_kit.h"
 
-namespace suite {
+namespace suite::format_weather_plain_test {
 namespace {
 
 constexpr const char* kTable =
@@ -156,4 +156,4 @@ TEST(Wth, RefusesWithThePlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_weather_plain_test

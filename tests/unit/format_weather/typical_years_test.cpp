@@ -3,7 +3,7 @@
 #include "formats/weather/weather.h"
 #include "support/weather_kit.h"
 
-namespace suite {
+namespace suite::format_weather_typical_years_test {
 namespace {
 
 constexpr const char* kDenver = SUITE_TEST_DATA "/weather/denver_four_days.epw";
@@ -282,4 +282,4 @@ TEST(Tmy3, MissingAndRefused) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::format_weather_typical_years_test

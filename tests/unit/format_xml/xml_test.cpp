@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace suite {
+namespace suite::format_xml_xml_test {
 
 namespace {
 
@@ -42,4 +42,4 @@ TEST(Xml, FaultsAreLocated) {
 
 }  // namespace
 
-}  // namespace suite
+}  // namespace suite::format_xml_xml_test

@@ -7,7 +7,7 @@
 
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::averaged_table_test {
 namespace {
 
 using Between = AveragedTable::Between;
@@ -111,4 +111,4 @@ TEST(AveragedTable, RefusesBadTables) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::averaged_table_test

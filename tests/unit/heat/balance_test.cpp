@@ -10,7 +10,7 @@
 #include "support/heat_kit.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::balance_test {
 namespace {
 
 using namespace test;
@@ -162,4 +162,4 @@ TEST(Balance, BackConditions) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::balance_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::compact_rows_test {
 namespace {
 
 TEST(CompactRows, KeepsWhatIsEvenAndTheLeastExactly) {
@@ -34,4 +34,4 @@ TEST(CompactRows, WhatIsNotFiniteStaysSo) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::compact_rows_test

@@ -8,7 +8,7 @@
 
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::convection_test {
 namespace {
 
 using testing::HasSubstr;
@@ -94,4 +94,4 @@ TEST(Convection, EveryLaw) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::convection_test

@@ -11,7 +11,7 @@
 #include "support/heated_scene_kit.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::elements_test {
 namespace {
 
 using namespace test;
@@ -240,4 +240,4 @@ TEST(Elements, RefuseScenesWithoutAny) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::elements_test

@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::heated_material_test {
 namespace {
 
 using testing::AllOf;
@@ -89,4 +89,4 @@ TEST(HeatedMaterial, Messages) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::heated_material_test

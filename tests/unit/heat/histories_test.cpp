@@ -7,7 +7,7 @@
 
 #include "spectral/planck.h"
 
-namespace suite {
+namespace suite::histories_test {
 namespace {
 
 double black(double kelvin) { return kStefanBoltzmann * std::pow(kelvin, 4); }
@@ -59,4 +59,4 @@ TEST(Histories, RowsAreTakenChangedAndDropped) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::histories_test

@@ -10,7 +10,7 @@
 #include "math/sampling.h"
 #include "support/radiometry_kit.h"
 
-namespace suite {
+namespace suite::mesh_cells_test {
 namespace {
 
 using namespace test;
@@ -139,4 +139,4 @@ TEST(MeshCells, FoldsAreApartAndWhatHasNoPartHasNone) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mesh_cells_test

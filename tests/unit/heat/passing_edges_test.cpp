@@ -8,7 +8,7 @@
 
 #include "heat/lit_time.h"
 
-namespace suite {
+namespace suite::passing_edges_test {
 namespace {
 
 // Lit from when an edge comes by until another one does; seen through a wide sun.
@@ -113,4 +113,4 @@ TEST(LitTime, IntegralsAreExact) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::passing_edges_test

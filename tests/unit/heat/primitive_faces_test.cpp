@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::primitive_faces_test {
 namespace {
 
 struct Case {
@@ -111,4 +111,4 @@ TEST(PrimitiveFaces, Stretches) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::primitive_faces_test

@@ -4,7 +4,7 @@
 #include "heat/heat_fluxes.h"
 #include "support/heated_scene_kit.h"
 
-namespace suite {
+namespace suite::probes_test {
 namespace {
 
 using namespace test;
@@ -26,4 +26,4 @@ TEST(Probes, AreOfTheSurfaceThatTheyLieOn) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::probes_test

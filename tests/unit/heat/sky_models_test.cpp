@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::sky_models_test {
 namespace {
 
 // 20 C and 50 %: 9.27 C by the tables of the psychrometric chart; 6.11, 12.27, 23.37, 42.43 hPa at 0, 10, 20, 30 C
@@ -71,4 +71,4 @@ TEST(SkyModels, DiffuseShareOfErbs) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sky_models_test

@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/slab_kit.h"
 
-namespace suite {
+namespace suite::slab_batch_test {
 namespace {
 
 using namespace test;
@@ -78,4 +78,4 @@ TEST(SlabBatch, EstimateTellsTheErrorOfAStep) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::slab_batch_test

@@ -7,7 +7,7 @@
 
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::sun_table_test {
 namespace {
 
 TEST(SunTable, AgreesWithTheEphemerisThroughAYear) {
@@ -43,4 +43,4 @@ TEST(SunTable, MeanSineIsThatOfTheLitPart) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sun_table_test

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::weather_series_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -148,4 +148,4 @@ TEST(WeatherSeries, WhatIsMissingStaysMissing) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::weather_series_test

@@ -5,7 +5,7 @@
 #include "spectral/planck.h"
 #include "support/weather_kit.h"
 
-namespace suite {
+namespace suite::weather_test {
 namespace {
 
 // Hours of UTC from midnight on, 40 N 105 W, each with 10 C, half humid, 2 m/s of west wind.
@@ -302,4 +302,4 @@ TEST(Weather, RunsThroughALeapSecond) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::weather_test

@@ -6,7 +6,7 @@
 #include "air/discrete_ordinates.h"
 #include "tests/support/lidar_kit.h"
 
-namespace suite::test {
+namespace suite::test::air_test {
 namespace {
 
 AirSpec haze() {
@@ -95,4 +95,4 @@ TEST(LidarAir, AirWeakensWhatSurfacesReturn) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::air_test

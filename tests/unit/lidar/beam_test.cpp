@@ -5,7 +5,7 @@
 #include "lidar/first_direction.h"
 #include "math/sampling.h"
 
-namespace suite::test {
+namespace suite::test::beam_test {
 namespace {
 
 BeamProfile top_hat(double half, double waist = 0) {
@@ -145,4 +145,4 @@ TEST(FirstDirection, IsUnbiasedFromAnyBaseline) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::beam_test

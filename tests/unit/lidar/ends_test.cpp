@@ -5,7 +5,7 @@
 #include "tests/support/lidar_kit.h"
 #include "tests/support/pipeline_kit.h"
 
-namespace suite::test {
+namespace suite::test::ends_test {
 namespace {
 
 // Totals and ten parts of the gate, of both ends. Parts of less than 2 % are left out: a few paths bring them, and
@@ -188,4 +188,4 @@ TEST(LidarEnds, SumsOfRangeBinsAreTheSteadyImage) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::ends_test

@@ -9,7 +9,7 @@
 #include "tests/support/lidar_kit.h"
 #include "tests/support/message_of.h"
 
-namespace suite::test {
+namespace suite::test::errors_test {
 namespace {
 
 std::shared_ptr<Scene> plate(double reflectance, double half = 1000) {
@@ -338,4 +338,4 @@ TEST(LidarErrors, FaultsAreTold) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::errors_test

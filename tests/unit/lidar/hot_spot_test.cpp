@@ -7,7 +7,7 @@
 
 #include "tests/support/lidar_kit.h"
 
-namespace suite::test {
+namespace suite::test::hot_spot_test {
 namespace {
 
 constexpr double kTop = 10, kHeight = 100, kIndex = 3, kProjection = 0.5, kReflectance = 0.4, kTransmittance = 0.3;
@@ -191,4 +191,4 @@ TEST(HotSpot, CanopiesOfSingleLeavesAreMatterOfLeavesOnAverage) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::hot_spot_test

@@ -7,7 +7,7 @@
 #include "lidar/pulse_train.h"
 #include "spectral/planck.h"
 
-namespace suite {
+namespace suite::lidar_text_test {
 namespace {
 
 using testing::HasSubstr;
@@ -139,4 +139,4 @@ TEST(LidarText, Ambiguity) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::lidar_text_test

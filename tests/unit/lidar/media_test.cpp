@@ -6,7 +6,7 @@
 
 #include "tests/support/lidar_kit.h"
 
-namespace suite::test {
+namespace suite::test::media_test {
 namespace {
 
 // A layer of 100 m with a backscatter coefficient beta = extinction / S: photons of single scattering
@@ -332,4 +332,4 @@ TEST(LidarMedia, AnIntegratingSphereRings) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::media_test

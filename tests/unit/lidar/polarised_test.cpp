@@ -7,7 +7,7 @@
 #include "optics/models.h"
 #include "tests/support/lidar_kit.h"
 
-namespace suite::test {
+namespace suite::test::polarised_test {
 namespace {
 
 using enum Analyser;
@@ -162,4 +162,4 @@ TEST(LidarPolarised, FurtherOrders) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::polarised_test

@@ -8,7 +8,7 @@
 #include "base/params.h"
 #include "spectral/planck.h"
 
-namespace suite {
+namespace suite::pulse_train_test {
 namespace {
 
 std::shared_ptr<const Deflector> deflector(const std::string& yaml) {
@@ -113,4 +113,4 @@ TEST(PulseTrain, TwoVehicles) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::pulse_train_test

@@ -5,7 +5,7 @@
 #include "tests/support/lamps_kit.h"
 #include "tests/support/lidar_kit.h"
 
-namespace suite::test {
+namespace suite::test::trace_test {
 namespace {
 
 std::shared_ptr<Scene> plate(double reflectance, double half = 1000) {
@@ -294,4 +294,4 @@ TEST(Trace, PosesAreThoseOfEmissionAndReception) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::trace_test

@@ -8,7 +8,7 @@
 #include "support/conformance.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::candela_test {
 namespace {
 
 LightSpecPtr lamp(const std::string& intensity, const Curve& spectrum) {
@@ -61,4 +61,4 @@ TEST(Candela, WantASpectrumThatTheEyeSees) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::candela_test

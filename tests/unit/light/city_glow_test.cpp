@@ -8,7 +8,7 @@
 #include "light/kinds/night_sky.h"
 #include "spectral/photopic.h"
 
-namespace suite::test {
+namespace suite::test::city_glow_test {
 namespace {
 
 Dir at(double elevation_deg, double azimuth_deg) {
@@ -61,4 +61,4 @@ TEST(NightMap, CityGlowIsAPart) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::city_glow_test

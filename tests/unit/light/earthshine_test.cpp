@@ -4,7 +4,7 @@
 #include "light/kinds/moon.h"
 #include "light/kinds/solar_spectrum.h"
 
-namespace suite::test {
+namespace suite::test::earthshine_test {
 namespace {
 
 MoonGeometry at_phase(double degrees) {
@@ -37,4 +37,4 @@ TEST(Earthshine, AddsToTheMoon) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::earthshine_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite::test {
+namespace suite::test::lamp_map_test {
 namespace {
 
 // 3 columns, 2 rows: 0 1 2 / 3 4 5.
@@ -47,4 +47,4 @@ TEST(LampMap, PixelsOnTheEarth) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lamp_map_test

@@ -9,7 +9,7 @@
 #include "light/night/glow_shells.h"
 #include "light/night/zodiacal.h"
 
-namespace suite::test {
+namespace suite::test::night_sky_test {
 namespace {
 
 // In S10 of a magnitude per square arc second.
@@ -387,4 +387,4 @@ TEST(NightMap, Illuminance) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::night_sky_test

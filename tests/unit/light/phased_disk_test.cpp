@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite::test {
+namespace suite::test::phased_disk_test {
 namespace {
 
 constexpr double kHalf = 0.26 * kDegree;
@@ -65,4 +65,4 @@ TEST(PhasedDisk, SamplesCarryIt) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::phased_disk_test

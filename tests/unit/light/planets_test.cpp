@@ -8,7 +8,7 @@
 
 #include "light/kinds/night_sky.h"
 
-namespace suite::test {
+namespace suite::test::planets_test {
 namespace {
 
 struct Published {
@@ -107,4 +107,4 @@ TEST(NightMap, PlanetsLightAPlane) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::planets_test

@@ -4,7 +4,7 @@
 #include "light/light_rows.h"
 #include "support/polarisation_page.h"
 
-namespace suite {
+namespace suite::polarisation_page_test {
 namespace {
 
 TEST(PolarisationPage, SaysOfEveryLightWhatItIs) {
@@ -12,4 +12,4 @@ TEST(PolarisationPage, SaysOfEveryLightWhatItIs) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::polarisation_page_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite::test {
+namespace suite::test::satellites_test {
 namespace {
 
 const SceneFrame kFrame({0, 0, 0});
@@ -42,4 +42,4 @@ TEST(Satellites, GoOutInTheShadow) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::satellites_test

@@ -9,7 +9,7 @@
 #include "light/kinds/clear_sky.h"
 #include "math/stats.h"
 
-namespace suite::test {
+namespace suite::test::scintillation_test {
 namespace {
 
 // 0.09 D^(-2/3) / sqrt(2 t): 5 cm, zenith, 1 s, sea level, by hand.
@@ -48,4 +48,4 @@ TEST(Scintillation, FactorsHaveItsMoments) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::scintillation_test

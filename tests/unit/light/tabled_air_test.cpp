@@ -10,7 +10,7 @@
 #include "light/kinds/sun.h"
 #include "tests/support/message_of.h"
 
-namespace suite {
+namespace suite::tabled_air_test {
 namespace {
 
 using testing::HasSubstr;
@@ -288,4 +288,4 @@ TEST(TabledAir, WhatCannotBeBesideIt) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::tabled_air_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::anderson_test {
 namespace {
 
 // A linear map of n unknowns that contracts by 0.999: n + 1 images suffice; plain iteration needs thousands.
@@ -28,4 +28,4 @@ TEST(Anderson, SolvesALinearMapInAsManyImagesAsUnknowns) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::anderson_test

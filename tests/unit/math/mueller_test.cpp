@@ -5,7 +5,7 @@
 #include "math/sampling.h"
 #include "math/warps.h"
 
-namespace suite {
+namespace suite::mueller_test {
 namespace {
 
 Dir random_direction(Pcg32& random) { return uniform_sphere({random.uniform(), random.uniform()}); }
@@ -75,4 +75,4 @@ TEST(Mueller, OtherConventionsDifferBySigns) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mueller_test

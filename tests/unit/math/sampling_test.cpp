@@ -7,7 +7,7 @@
 
 #include "math/sampling.h"
 
-using namespace suite;
+namespace suite::sampling_test {
 
 namespace {
 
@@ -136,3 +136,5 @@ TEST(Pcg, KnownAnswers) {
   for (const uint32_t expected : {0xa15c02b7u, 0x7b47f409u, 0xba1d3330u, 0x83d2f293u, 0xbfa4784bu, 0xcbed606eu})
     EXPECT_EQ(rng.next(), expected);
 }
+
+}  // namespace suite::sampling_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace suite {
+namespace suite::share_test {
 namespace {
 
 TEST(Share, RoundingIsTakenOff) {
@@ -29,4 +29,4 @@ TEST(Share, FaultsStay) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::share_test

@@ -6,7 +6,7 @@
 #include "math/sampling.h"
 #include "math/stats.h"
 
-using namespace suite;
+namespace suite::stats_test {
 
 TEST(RunningStats, AgreesWithTheTwoPassFormulaAndMerges) {
   Pcg32 rng(5);
@@ -116,3 +116,5 @@ TEST(ChiSquareTest, PoolsRareCellsAndRejectsTheImpossible) {
   // (45-50)^2/50 + (55-50)^2/50 = 1 with one degree of freedom.
   EXPECT_NEAR(chi_square_test(std::vector<double>{45, 55}, std::vector<double>{50, 50}, 5), 0.31731050786291, 1e-10);
 }
+
+}  // namespace suite::stats_test

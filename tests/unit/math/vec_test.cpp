@@ -9,7 +9,7 @@
 #include "math/vec.h"
 #include "math/warps.h"
 
-using namespace suite;
+namespace suite::vec_test {
 
 namespace {
 
@@ -131,3 +131,5 @@ TEST(QuickAngle, IsTheExactOneWithin5e8) {
     EXPECT_NEAR(quick_polar_angle(d), polar_angle(d), 5e-8);
   }
 }
+
+}  // namespace suite::vec_test

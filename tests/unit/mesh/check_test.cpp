@@ -8,7 +8,7 @@
 #include "mesh/weld.h"
 #include "tests/support/mesh_kit.h"
 
-namespace suite {
+namespace suite::check_test {
 namespace {
 
 SourceMesh cube() {
@@ -193,4 +193,4 @@ TEST(Mesh, RepairLeavesAMoebiusStripAlone) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::check_test

@@ -10,7 +10,7 @@
 #include "scene/mesh_builder.h"
 #include "support/mesh_kit.h"
 
-namespace suite {
+namespace suite::cut_test {
 namespace {
 
 const Where kHere{"p.json", 1, 0, {}, -1};
@@ -197,4 +197,4 @@ TEST(Tin, OddPoints) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::cut_test

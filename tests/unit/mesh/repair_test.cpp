@@ -10,7 +10,7 @@
 #include "mesh/repair.h"
 #include "tests/support/mesh_kit.h"
 
-namespace suite {
+namespace suite::repair_test {
 namespace {
 
 // Appends a cube that faces outwards.
@@ -221,4 +221,4 @@ TEST(MeshDecimation, OddMeshesPass) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::repair_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::sketch_test {
 namespace {
 
 // n x n vertices over the unit square, two materials: left and right.
@@ -101,4 +101,4 @@ TEST(Sketch, OfExactSurfacesHasTheirArea) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sketch_test

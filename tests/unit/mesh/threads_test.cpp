@@ -10,7 +10,7 @@
 
 #include "mesh/check.h"
 
-namespace suite {
+namespace suite::threads_test {
 namespace {
 
 constexpr int kTries = 120, kThreads = 4;
@@ -45,4 +45,4 @@ TEST(Threads, FirstUseInSeveralThreads) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::threads_test

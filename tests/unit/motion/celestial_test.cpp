@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite::test {
+namespace suite::test::celestial_test {
 namespace {
 
 struct Row {
@@ -68,4 +68,4 @@ TEST(Celestial, TheSunCrossesTheEquinox) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::celestial_test

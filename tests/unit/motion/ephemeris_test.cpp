@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 
-namespace suite {
+namespace suite::ephemeris_test {
 namespace {
 
 // The rows "name,value,unit,note" of the solar position example.
@@ -111,7 +111,7 @@ TEST(Ephemeris, SunRadiusAndSeason) {
 }
 
 TEST(Ephemeris, RefractionNearTheHorizonAndBelow) {
-  const Refraction air{101000, 283};
+  const SiteAir air{101000, 283};
   EXPECT_NEAR(refraction_lift(0, air) / kDegree * 60, 28.98, 0.1);  // Saemundsson at geometric 0
   EXPECT_EQ(refraction_lift(-0.02, air), 0);
   EXPECT_NEAR(refraction_lift(kPi / 2, air), 0, 1e-6);
@@ -152,4 +152,4 @@ TEST(Ephemeris, TheSeriesOfTheSunIsTheExactOne) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::ephemeris_test

@@ -12,7 +12,7 @@
 #include "support/message_of.h"
 #include "support/run_command.h"
 
-namespace suite {
+namespace suite::map_projection_test {
 namespace {
 
 using testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST_F(MapProjections, AsGdalDoes) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::map_projection_test

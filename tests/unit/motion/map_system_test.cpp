@@ -8,7 +8,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::map_system_test {
 namespace {
 
 TEST(MapSystem, CodesOfNames) {
@@ -76,4 +76,4 @@ TEST(GeoidGrid, FaultsSayWhereGridsAreHad) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::map_system_test

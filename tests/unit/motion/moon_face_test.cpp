@@ -5,7 +5,7 @@
 
 #include "motion/ephemeris.h"
 
-namespace suite::test {
+namespace suite::test::moon_face_test {
 namespace {
 
 // J. Meeus, "Astronomical Algorithms", example 53.a: 1992 April 12, 0 h TD, from the Earth's centre: libration -1.206
@@ -55,4 +55,4 @@ TEST(MoonFace, SolarEclipses) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::moon_face_test

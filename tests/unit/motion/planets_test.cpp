@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace suite::test {
+namespace suite::test::planets_test {
 namespace {
 
 struct Row {
@@ -67,4 +67,4 @@ TEST(Planets, AreFiniteInAnyYear) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::planets_test

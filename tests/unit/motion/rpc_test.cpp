@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace suite {
+namespace suite::rpc_test {
 namespace {
 
 const SceneFrame kFrame(Geodetic{47, 179.9995, 300});  // the picture crosses the meridian of 180 degrees
@@ -65,4 +65,4 @@ TEST(Rpc, SaysWhatItDoesNotFollow) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::rpc_test

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::scene_frame_test {
 namespace {
 
 double dms(double d, double m, double s) { return d + m / 60 + s / 3600; }
@@ -130,4 +130,4 @@ TEST(SceneFrame, RefusesWhatIsNoPlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::scene_frame_test

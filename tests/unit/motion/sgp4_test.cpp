@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "formats/tle/tle.h"
 
-namespace suite {
+namespace suite::sgp4_test {
 namespace {
 
 const std::string kSets = SUITE_TEST_DATA "/motion/SGP4-VER.TLE";
@@ -182,4 +182,4 @@ TEST(Tle, LocatesEveryFault) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::sgp4_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite::test {
+namespace suite::test::star_refraction_test {
 namespace {
 
 constexpr double kArcSecond = kDegree / 3600;
@@ -91,4 +91,4 @@ TEST(StarRefraction, FromOrbitThereIsNoneUpwards) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::star_refraction_test

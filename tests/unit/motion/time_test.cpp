@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace suite {
+namespace suite::time_test {
 namespace {
 
 TEST(Time, SimulationSecondsRunThroughALeapSecond) {
@@ -74,4 +74,4 @@ TEST(Time, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::time_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace suite {
+namespace suite::timetable_test {
 namespace {
 
 using Rows = std::vector<std::tuple<int, double, double>>;  // row (-1 = none), from, until
@@ -74,4 +74,4 @@ TEST(Timetable, SaysWhatIsWrongWithIt) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::timetable_test

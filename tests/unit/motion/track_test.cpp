@@ -8,7 +8,7 @@
 #include "formats/tle/tle.h"
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::track_test {
 namespace {
 
 Quat random_rotation(Pcg32& rng) {
@@ -294,4 +294,4 @@ TEST(TimeSteps, Refusals) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::track_test

@@ -9,7 +9,7 @@
 #include "optics/models/bpdf.h"
 #include "support/conformance.h"
 
-namespace suite {
+namespace suite::bpdf_test {
 namespace {
 
 // Directions of light from theta_i to theta_s, phi_s = 0 forwards (degrees).
@@ -119,4 +119,4 @@ TEST(Bpdf, DiffuseLightIsPolarisedByItsRefraction) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::bpdf_test

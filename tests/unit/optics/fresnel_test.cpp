@@ -8,7 +8,7 @@
 #include "optics/models.h"
 #include "support/conformance.h"
 
-namespace suite {
+namespace suite::fresnel_test {
 namespace {
 
 // The textbook formulas with complex indices in long double.
@@ -101,4 +101,4 @@ TEST(Fresnel, RoughInterfaceIsReciprocalInBasicRadiance) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::fresnel_test

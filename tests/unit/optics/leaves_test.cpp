@@ -7,7 +7,7 @@
 #include "optics/phase_function.h"
 #include "support/conformance.h"
 
-namespace suite {
+namespace suite::leaves_test {
 namespace {
 
 TEST(LeavesPhase, PlatesThatLieEveryWay) {
@@ -36,4 +36,4 @@ TEST(LeavesPhase, PlatesThatLieEveryWay) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::leaves_test

@@ -15,7 +15,7 @@
 #include "support/model_examples.h"
 #include "support/polarisation_page.h"
 
-namespace suite {
+namespace suite::mueller_test {
 namespace {
 
 struct Line {
@@ -309,4 +309,4 @@ TEST(Mueller, PhaseFunctionsScatterAsTheirMatricesSay) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::mueller_test

@@ -8,7 +8,7 @@
 #include "optics/models.h"
 #include "support/conformance.h"
 
-namespace suite {
+namespace suite::published_fits_test {
 namespace {
 
 Dir at(double theta_deg, double phi_deg) { return dir_from_angles(theta_deg * kDegree, phi_deg * kDegree); }
@@ -118,4 +118,4 @@ TEST(PublishedFits, EnergyIsKept) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::published_fits_test

@@ -7,7 +7,7 @@
 #include "optics/phase_function.h"
 #include "support/sqt_examples.h"
 
-namespace suite {
+namespace suite::stored_range_test {
 namespace {
 
 ModelSpec fitted(std::vector<double> um, const std::string& rule) {
@@ -73,4 +73,4 @@ TEST(StoredRange, PhaseFunctionsLikewise) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::stored_range_test

@@ -14,7 +14,7 @@
 #include "support/conformance.h"
 #include "support/model_examples.h"
 
-namespace suite {
+namespace suite::totals_test {
 namespace {
 
 // Sums of w / pdf at one knot over points of eight scrambles, all of as many.
@@ -109,4 +109,4 @@ TEST(Totals, AgreeWithTheIntegralOfEval) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::totals_test

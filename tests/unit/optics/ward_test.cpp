@@ -6,7 +6,7 @@
 #include "optics/models.h"
 #include "support/conformance.h"
 
-namespace suite {
+namespace suite::ward_test {
 namespace {
 
 TEST(WardAlbedo, TableAgreesWithTheQuadrature) {
@@ -79,4 +79,4 @@ TEST(Ward, SaysWhatItCannotBe) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::ward_test

@@ -10,7 +10,7 @@
 #include "page/live_page.h"
 #include "page/steps.h"
 
-namespace suite {
+namespace suite::packed_test {
 namespace {
 
 TEST(HalfBits, AreThoseOfIeee754) {
@@ -121,4 +121,4 @@ TEST(Base64, IsThatOfRfc4648) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::packed_test

@@ -5,7 +5,7 @@
 
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::colour_classes_test {
 namespace {
 
 TEST(ColourClasses, AFewColoursAreTheirOwnClasses) {
@@ -39,4 +39,4 @@ TEST(ColourClasses, KeepTheMeanAndComeCloserTheMoreTheyAre) {
 TEST(ColourClasses, OfNothingAreNone) { EXPECT_TRUE(classify_colours({}, 5).colours.empty()); }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::colour_classes_test

@@ -9,7 +9,7 @@
 #include "support/radiometry_kit.h"
 #include "trace/tracer.h"
 
-namespace suite::test {
+namespace suite::test::combine_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -171,4 +171,4 @@ TEST(Combine, WhatCannotBeRelatedIsRefused) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::combine_test

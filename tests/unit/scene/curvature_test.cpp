@@ -16,7 +16,7 @@
 #include "support/temp_folder.h"
 #include "surface/map_lookup.h"
 
-namespace suite {
+namespace suite::curvature_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -241,4 +241,4 @@ TEST_F(Curvature, NeedsAnOrigin) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::curvature_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace suite {
+namespace suite::leaves_test {
 namespace {
 
 TEST(Leaves, AreInTheOrderOfTheHierarchy) {
@@ -77,4 +77,4 @@ TEST(Leaves, OfDeepNestsAreFound) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::leaves_test

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::point_voxels_test {
 namespace {
 
 // Beams from above meet leaves by chance (Beer's law with a projection of 1/2), else the ground.
@@ -81,4 +81,4 @@ TEST(PointVoxels, FarPointsAreNoHugeGrid) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::point_voxels_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace suite {
+namespace suite::shared_faces_test {
 namespace {
 
 // A body of a medium (0: water, 1: oil, 2: fog, of a higher priority).
@@ -80,4 +80,4 @@ TEST(SharedFaces, NotWhereNothingIsLeftOpen) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::shared_faces_test

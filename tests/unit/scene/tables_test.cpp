@@ -11,7 +11,7 @@
 #include "scene/summary.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::tables_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -112,4 +112,4 @@ TEST(SceneTables, TheSummaryTellsOfEveryTable) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::tables_test

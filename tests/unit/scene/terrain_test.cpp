@@ -10,7 +10,7 @@
 #include "support/message_of.h"
 #include "support/temp_folder.h"
 
-namespace suite {
+namespace suite::terrain_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -127,4 +127,4 @@ TEST(Terrain, TilesCoverTheGridOnceWithEqualSeams) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::terrain_test

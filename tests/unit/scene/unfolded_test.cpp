@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace suite {
+namespace suite::unfolded_test {
 namespace {
 
 // Groups, each of which places others so many times: {group: {target, times}}, target kNone for a sphere.
@@ -94,4 +94,4 @@ TEST(ShareGroups, CountsBeyondAnyMemory) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::unfolded_test

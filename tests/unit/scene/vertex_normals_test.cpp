@@ -8,7 +8,7 @@
 #include "scene/issues.h"
 #include "scene/vertex_normals.h"
 
-namespace suite {
+namespace suite::vertex_normals_test {
 namespace {
 
 constexpr const char* kCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
@@ -126,4 +126,4 @@ TEST(VertexNormals, ManyFansAtOnePlaceStayCheap) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::vertex_normals_test

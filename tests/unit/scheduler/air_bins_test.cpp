@@ -7,7 +7,7 @@
 #include "scheduler/air_bins.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::air_bins_test {
 namespace {
 
 AirSpec air() {
@@ -107,4 +107,4 @@ TEST(AirBins, BandsThatGasesAreNotKnownForAreNamed) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_bins_test

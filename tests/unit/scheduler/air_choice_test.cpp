@@ -6,7 +6,7 @@
 #include "air/column.h"
 #include "support/bins_kit.h"
 
-namespace suite {
+namespace suite::air_choice_test {
 namespace {
 
 TEST(AirChoice, CellsAreFineAndNarrowerInNarrowBands) {
@@ -95,4 +95,4 @@ TEST(AirChoice, BiasOfBandsThatMissIsPartOfTheirErrors) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_choice_test

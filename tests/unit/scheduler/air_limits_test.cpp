@@ -9,7 +9,7 @@
 #include "air/lowtran.h"
 #include "support/radiometry_kit.h"
 
-namespace suite {
+namespace suite::air_limits_test {
 namespace {
 
 using testing::Contains;
@@ -214,4 +214,4 @@ TEST(AirLimits, ViewsAlongTheLimb) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::air_limits_test

@@ -5,7 +5,7 @@
 
 #include "support/bins_kit.h"
 
-namespace suite {
+namespace suite::bins_test {
 namespace {
 
 using test::BinSensor;
@@ -170,4 +170,4 @@ TEST(Bins, LeaveNoStretchOfTheWidestStepAlone) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::bins_test

@@ -12,7 +12,7 @@
 #include "support/media_kit.h"
 #include "support/same_counts.h"
 
-namespace suite::test {
+namespace suite::test::executor_test {
 namespace {
 
 // Lines over a corner under sun and sky, each a capture of its own.
@@ -195,4 +195,4 @@ TEST_F(Threads, other_executors_give_the_same_bytes) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::executor_test

@@ -14,7 +14,7 @@
 
 #include "support/radiometry_kit.h"
 
-namespace suite {
+namespace suite::features_test {
 namespace {
 
 TEST(Features, ALambertianSceneAtRestLeavesTheRestAlone) {
@@ -130,4 +130,4 @@ TEST(Features, EachIsExplained) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::features_test

@@ -9,7 +9,7 @@
 #include "scheduler/items.h"
 #include "support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::kits_test {
 namespace {
 
 using Kind = KitCache::Kind;
@@ -160,4 +160,4 @@ TEST(Kits, memory_of_300_states_stays_flat_after_the_budget) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::kits_test

@@ -9,7 +9,7 @@
 
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::order_test {
 namespace {
 
 std::vector<StatePair> in_order(const std::vector<StatePair>& work, const std::vector<size_t>& order) {
@@ -75,4 +75,4 @@ TEST(Order, equal_pairs_keep_their_order_and_nothing_is_nothing) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::order_test

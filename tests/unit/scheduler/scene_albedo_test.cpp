@@ -7,7 +7,7 @@
 
 #include "support/radiometry_kit.h"
 
-namespace suite::test {
+namespace suite::test::scene_albedo_test {
 namespace {
 
 Material grey(const std::string& id, double reflectance) { return material(id, lambert(reflectance)); }
@@ -100,4 +100,4 @@ TEST(SceneAlbedo, AirGetsIt) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::scene_albedo_test

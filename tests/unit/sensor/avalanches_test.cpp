@@ -9,7 +9,7 @@
 #include "spectral/photopic.h"
 #include "support/detector_kit.h"
 
-namespace suite {
+namespace suite::avalanches_test {
 namespace {
 
 using test::detector_of;
@@ -163,4 +163,4 @@ TEST(Intensifier, AutoGatingHoldsTheMean) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::avalanches_test

@@ -6,7 +6,7 @@
 #include "sensor/sensors.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::bands_test {
 namespace {
 
 using testing::AllOf;
@@ -65,4 +65,4 @@ TEST(Bands, FaultsHaveTheirPlace) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::bands_test

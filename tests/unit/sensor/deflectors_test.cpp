@@ -7,7 +7,7 @@
 #include "sensor/deflectors/deflector.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::deflectors_test {
 namespace {
 
 using testing::HasSubstr;
@@ -192,4 +192,4 @@ TEST(Deflectors, PrismsEitherWay) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::deflectors_test

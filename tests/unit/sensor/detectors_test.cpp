@@ -12,7 +12,7 @@
 #include "support/detector_kit.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::detectors_test {
 namespace {
 
 using test::chance;
@@ -314,4 +314,4 @@ TEST(Detectors, MessagesNameKeysAndRanges) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::detectors_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::footprints_test {
 namespace {
 
 struct Turned {
@@ -82,4 +82,4 @@ TEST(Footprints, TheUpperLayerCounts) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::footprints_test

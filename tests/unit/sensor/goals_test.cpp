@@ -6,7 +6,7 @@
 #include "support/message_of.h"
 #include "support/platform_kit.h"
 
-namespace suite {
+namespace suite::goals_test {
 namespace {
 
 using test::PlatformKit;
@@ -154,4 +154,4 @@ TEST(Goals, TargetsOfTheDegreeAreChecked) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::goals_test

@@ -7,7 +7,7 @@
 #include "sensor/ground_grid.h"
 #include "support/message_of.h"
 
-namespace suite {
+namespace suite::ground_grid_test {
 namespace {
 
 // A picture of columns x rows whose pixels lie `step` apart, turned by an angle.
@@ -96,4 +96,4 @@ TEST(GroundGrid, NothingKnownAndTooManyCells) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::ground_grid_test

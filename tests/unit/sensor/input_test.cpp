@@ -6,7 +6,7 @@
 #include "support/platform_kit.h"
 #include "support/platform_text.h"
 
-namespace suite {
+namespace suite::input_test {
 namespace {
 
 using testing::AllOf;
@@ -110,4 +110,4 @@ TEST(PlatformText, ADecayedOrbitIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::input_test

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::polarimetry_test {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr;
@@ -112,4 +112,4 @@ TEST(Polarimetry, ErrorsFollowTheCovariances) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::polarimetry_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::psf_test {
 namespace {
 
 double radius(const PointSpread& psf, double share) {
@@ -40,4 +40,4 @@ TEST(PointSpread, AiryHoldsItsShareWithinTheFirstDarkRing) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::psf_test

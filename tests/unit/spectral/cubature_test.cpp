@@ -7,7 +7,7 @@
 
 #include "spectral/least_squares.h"
 
-namespace suite {
+namespace suite::cubature_test {
 namespace {
 
 TEST(LeastSquares, FitsALineThroughPoints) {
@@ -113,4 +113,4 @@ TEST(ChosenCells, TellWhatTheyCannotReach) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::cubature_test

@@ -10,7 +10,7 @@
 
 #include "base/files.h"
 
-namespace suite {
+namespace suite::display_colour_test {
 namespace {
 
 struct Row {
@@ -98,4 +98,4 @@ TEST(DisplayColour, TransferIsItsOwnInverse) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::display_colour_test

@@ -9,7 +9,7 @@
 #include "spectral/photopic.h"
 #include "spectral/planck.h"
 
-namespace suite::test {
+namespace suite::test::lamp_spectra_test {
 namespace {
 
 // CIE 1931 colour matching functions as sums of Gaussians: C. Wyman, P. Sloan, P. Shirley, "Simple analytic
@@ -70,4 +70,4 @@ TEST(LampSpectra, SendOneWatt) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::lamp_spectra_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace suite {
+namespace suite::photopic_test {
 namespace {
 
 // The integral of V is 106.857 nm (CIE 15:2018, table of tristimulus sums), and 683.002 lm/W its scale.
@@ -43,4 +43,4 @@ TEST(Scotopic, MeetsTheBrightEyeAt555) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::photopic_test

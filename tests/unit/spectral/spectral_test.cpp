@@ -11,7 +11,7 @@
 #include "spectral/state.h"
 #include "support/message_of.h"
 
-using namespace suite;
+namespace suite::spectral_test {
 using testing::HasSubstr;
 
 TEST(Curve, InterpolatesAndIntegratesItsPiecesExactly) {
@@ -278,3 +278,5 @@ TEST(Projection, ABandOutsideTheStateIsRefused) {
   EXPECT_THAT(message_of([&] { BandProjection(make_state(bands, 0.01), other); }),
               HasSubstr("band 'swir' is not covered by the bins"));
 }
+
+}  // namespace suite::spectral_test

@@ -6,7 +6,7 @@
 #include "spectral/planck.h"
 #include "spectral/thermometer.h"
 
-namespace suite {
+namespace suite::thermometer_test {
 namespace {
 
 TEST(Thermometer, TemperaturesComeBack) {
@@ -57,4 +57,4 @@ TEST(Thermometer, WhatNoBlackbodySendsIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::thermometer_test

@@ -7,7 +7,7 @@
 
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::bundle_test {
 namespace {
 
 std::shared_ptr<const Bundle> fitted(double width) { return make_bundle(test::small_fit(test::glossy(width)).data); }
@@ -60,4 +60,4 @@ TEST(Bundle, TellsAllChannelsAsEach) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::bundle_test

@@ -9,7 +9,7 @@
 #include "sqt/cell.h"
 #include "sqt/tree.h"
 
-namespace suite::sqt {
+namespace suite::sqt::cell_test {
 namespace {
 
 Dir random_dir(Pcg32& rng) { return uniform_sphere({rng.uniform(), rng.uniform()}); }
@@ -154,4 +154,4 @@ TEST(Tree, FindsTheLeafThatHoldsADirection) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::cell_test

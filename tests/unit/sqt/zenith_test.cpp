@@ -10,7 +10,7 @@
 #include "sqt_fit/errors.h"
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::zenith_test {
 namespace {
 
 using test::Analytic;
@@ -144,4 +144,4 @@ TEST(Reciprocity, IsItsClosedFormAndOneNumber) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::zenith_test

@@ -6,7 +6,7 @@
 #include "sqt_fit/paper_fit.h"
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::builder_test {
 namespace {
 
 // Figure 5: the Henyey-Greenstein function of g = 0.9 from 64,800 one-degree samples becomes a tree of 612 nodes with a
@@ -89,4 +89,4 @@ TEST(PaperBuilder, LeavesCoverTheHemisphereWithoutOverlap) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::builder_test

@@ -9,7 +9,7 @@
 #include "sqt/coded_lattice.h"
 #include "sqt_fit/prefix_encoder.h"
 
-namespace suite::sqt {
+namespace suite::sqt::codes_test {
 namespace {
 
 TEST(SqtPrefixCode, TokensNameEveryNumber) {
@@ -112,4 +112,4 @@ TEST(SqtCodedLattice, MiddlesOfCellsAreThoseOfTheExactMap) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::codes_test

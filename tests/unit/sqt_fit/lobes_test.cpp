@@ -9,7 +9,7 @@
 #include "sqt_fit/lobe_detection.h"
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::lobes_test {
 namespace {
 
 using test::Analytic;
@@ -109,4 +109,4 @@ TEST(SqtLobes, AzimuthsFollowTheFunction) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::lobes_test

@@ -9,7 +9,7 @@
 #include "sqt_fit/fit.h"
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::metal_test {
 namespace {
 
 enum class Shape { ggx, beckmann };
@@ -149,4 +149,4 @@ TEST(SqtSpectra, ManyChannelsShareTheirSpectra) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::metal_test

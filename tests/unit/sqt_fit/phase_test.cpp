@@ -7,7 +7,7 @@
 #include "optics/phase_function.h"
 #include "sqt_fit/fit.h"
 
-namespace suite {
+namespace suite::phase_test {
 namespace {
 
 // Diffraction by a coarse mode (Fraunhofer's pattern, size parameters spread evenly in their logarithm around `size`)
@@ -87,4 +87,4 @@ TEST(SqtPhase, ErrorFiguresAreThoseOfAQuadrature) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::phase_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace suite::sqt {
+namespace suite::sqt::scattered_test {
 namespace {
 
 // Reflectance as canopies have it: dark towards the light, brighter with the view's angle.
@@ -82,4 +82,4 @@ TEST(Scattered, RepeatedSamplesCountWithTheirMean) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::scattered_test

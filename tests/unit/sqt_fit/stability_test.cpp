@@ -11,7 +11,7 @@
 #include "sqt_fit/scattered.h"
 #include "support/sqt_examples.h"
 
-namespace suite::sqt {
+namespace suite::sqt::stability_test {
 namespace {
 
 using test::Analytic;
@@ -221,4 +221,4 @@ TEST(SqtStability, PaperMethodStandsTheSame) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::stability_test

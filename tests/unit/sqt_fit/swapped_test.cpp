@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "sqt_fit/swapped.h"
 
-namespace suite::sqt {
+namespace suite::sqt::swapped_test {
 namespace {
 
 struct Lopsided : Function {
@@ -42,4 +42,4 @@ TEST(SqtSwapped, OnlyReflectanceHasTwoDirectionsToExchange) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::swapped_test

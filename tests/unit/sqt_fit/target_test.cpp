@@ -7,7 +7,7 @@
 #include "sqt_fit/fit.h"
 #include "sqt_fit/lobe_detection.h"
 
-namespace suite::sqt {
+namespace suite::sqt::target_test {
 namespace {
 
 // A rough surface whose wide lobe leans towards the horizon, with a bump over half vectors; three channels alike.
@@ -45,4 +45,4 @@ TEST(FitTarget, StepsOverHalfVectorsAreCodedOverHalfVectors) {
 }
 
 }  // namespace
-}  // namespace suite::sqt
+}  // namespace suite::sqt::target_test

@@ -8,7 +8,7 @@
 #include "spectral/planck.h"
 #include "surface/map_lookup.h"
 
-namespace suite {
+namespace suite::map_lookup_test {
 namespace {
 
 // 3 x 2 pixels, values 10 row + column: 0 1 2 / 10 11 12.
@@ -159,4 +159,4 @@ TEST(BlackbodyTable, AgreesWithPlanck) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::map_lookup_test

@@ -7,7 +7,7 @@
 #include "spectral/planck.h"
 #include "thermal/models.h"
 
-namespace suite {
+namespace suite::models_test {
 namespace {
 
 using testing::AllOf;
@@ -328,4 +328,4 @@ TEST(TemperatureField, SolvedOnceIsTheModelAskedAnew) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::models_test

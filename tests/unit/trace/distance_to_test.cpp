@@ -6,7 +6,7 @@
 #include "math/sampling.h"
 #include "trace/primitive_hit.h"
 
-namespace suite {
+namespace suite::distance_to_test {
 namespace {
 
 std::vector<Primitive> all_kinds() {
@@ -48,4 +48,4 @@ TEST(DistanceTo, IsInfiniteInAnEmptyInterval) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::distance_to_test

@@ -9,7 +9,7 @@
 #include "math/sampling.h"
 #include "trace/tracer.h"
 
-namespace suite {
+namespace suite::loose_mesh_test {
 namespace {
 
 struct Built {
@@ -189,4 +189,4 @@ TEST(LooseMesh, LetsHardlyAnythingThroughItsEdges) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::loose_mesh_test

@@ -9,7 +9,7 @@
 
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::tile_bvh_test {
 namespace {
 
 struct Boxes {
@@ -65,4 +65,4 @@ TEST(TileBvh, StopsWhereItIsTold) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::tile_bvh_test

@@ -10,7 +10,7 @@
 #include "motion/track.h"
 #include "trace/tracer.h"
 
-namespace suite {
+namespace suite::tile_hull_test {
 namespace {
 
 constexpr double kWindow = 2;  // s
@@ -166,4 +166,4 @@ TEST(Tiles, HeavyMeshesOfACellAreTilesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::tile_hull_test

@@ -8,7 +8,7 @@
 #include "trace/loose_mesh.h"
 #include "trace/tracer.h"
 
-namespace suite {
+namespace suite::together_test {
 namespace {
 
 // The surface of a box between two corners; a sheet when it has no height.
@@ -77,4 +77,4 @@ TEST_P(Together, MeetsWhatSingleRaysMeet) {
 INSTANTIATE_TEST_SUITE_P(Sizes, Together, testing::Values(1e-3, 1.0, 1e3));
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::together_test

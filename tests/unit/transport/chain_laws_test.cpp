@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace suite::test {
+namespace suite::test::chain_laws_test {
 namespace {
 
 TEST(ChainLaws, CountsAreDrawnWithTheirProbabilities) {
@@ -53,4 +53,4 @@ TEST(ChainLaws, PlacesAreDrawnWithTheirDensities) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::chain_laws_test

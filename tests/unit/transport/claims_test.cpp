@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace suite::test {
+namespace suite::test::claims_test {
 namespace {
 
 // Events of a path, from the sensor to the light:
@@ -208,4 +208,4 @@ TEST(Claims, CountsGoNoFurtherThanTheyCan) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::claims_test

@@ -8,7 +8,7 @@
 
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::equiangular_law_test {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -48,4 +48,4 @@ TEST(EquiangularLaw, IsOfNoUseThroughThePointItself) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::equiangular_law_test

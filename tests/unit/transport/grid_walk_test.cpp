@@ -8,7 +8,7 @@
 
 #include "transport/media/field.h"
 
-namespace suite {
+namespace suite::grid_walk_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -251,12 +251,12 @@ TEST(GridWalk, SeveralGridsAddUp) {
     std::array<double, 2> expected{}, sum{}, whole{};
     for (const PlacedGrid& p : field.placed()) expected[0] += depths(p, way)[0];
     const uint32_t background = random() % 2 ? 1 : kNone;
-    expected[1] = background == 1 ? std::min(way.length, kEndless) : 0;
+    expected[1] = background == 1 ? std::min(way.length, kEndlessWay) : 0;
     FieldWalk walk;
     walk.start(field, way.origin, way.direction, way.length, background, 0);
     while (walk.next())
       for (const Constituent& c : walk.contents())
-        sum[c.medium] += c.density * std::min(walk.end() - walk.begin(), kEndless);
+        sum[c.medium] += c.density * std::min(walk.end() - walk.begin(), kEndlessWay);
     walk.start(field, way.origin, way.direction, way.length, background, 0);
     walk.add_depths(whole);
     EXPECT_NEAR(sum[0], expected[0], 1e-11);
@@ -331,4 +331,4 @@ TEST(GridBlocks, AreSharedAndHoldOnlyWhatDiffers) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::grid_walk_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-namespace suite::test {
+namespace suite::test::hero_test {
 namespace {
 
 constexpr size_t kHeroes = 3, kValues = 5;
@@ -82,4 +82,4 @@ TEST(HeroDensities, MeansOfWhatFollowsAreThoseAfterTakingIt) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::hero_test

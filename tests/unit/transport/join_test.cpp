@@ -8,7 +8,7 @@
 #include "support/radiometry_kit.h"
 #include "transport/pipeline.h"
 
-namespace suite::test {
+namespace suite::test::join_test {
 namespace {
 
 // A row of 20 problems over a ground of six materials, some under a pane of glass that hides a lamp's worth of sun.
@@ -189,4 +189,4 @@ TEST(ExactSum, does_not_depend_on_the_order) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::join_test

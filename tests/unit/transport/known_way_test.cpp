@@ -8,7 +8,7 @@
 #include "light/stratified_air.h"
 #include "transport/known_way.h"
 
-namespace suite {
+namespace suite::known_way_test {
 namespace {
 
 SpectralState some_bins() {
@@ -170,4 +170,4 @@ TEST(KnownWay, LetsNoLightThroughBeBelowNothing) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::known_way_test

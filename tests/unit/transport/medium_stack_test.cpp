@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace suite {
+namespace suite::medium_stack_test {
 namespace {
 
 // What the comment says, without any cleverness.
@@ -95,4 +95,4 @@ TEST(MediumStack, CopiesOfDeepAndShallowOnes) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::medium_stack_test

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace suite::test {
+namespace suite::test::parallel_faces_test {
 namespace {
 
 TEST(ParallelFaces, OneAndTwo) {
@@ -41,4 +41,4 @@ TEST(ParallelFaces, MoreMeetingsBringAllOfIt) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::parallel_faces_test

@@ -13,7 +13,7 @@
 
 #include "transport/media/live_path.h"
 
-namespace suite::test {
+namespace suite::test::path_state_test {
 namespace {
 
 std::string text_of(const std::string& file) {
@@ -205,4 +205,4 @@ TEST(PathState, TheKernelKeepsFewMembers) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::path_state_test

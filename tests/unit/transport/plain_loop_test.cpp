@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-namespace suite::test {
+namespace suite::test::plain_loop_test {
 namespace {
 
 size_t lines(std::istream& in) {
@@ -36,4 +36,4 @@ TEST(PlainLoop, LinesAreCounted) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::plain_loop_test

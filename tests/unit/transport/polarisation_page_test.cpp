@@ -4,7 +4,7 @@
 #include "support/polarisation_page.h"
 #include "transport/technique_switches.h"
 
-namespace suite {
+namespace suite::polarisation_page_test {
 namespace {
 
 TEST(PolarisationPage, SaysOfEveryTechniqueWhatItDoes) {
@@ -12,4 +12,4 @@ TEST(PolarisationPage, SaysOfEveryTechniqueWhatItDoes) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::polarisation_page_test

@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "tests/support/media_kit.h"
 
-namespace suite::test {
+namespace suite::test::refracted_ray_test {
 namespace {
 
 constexpr double kIndex = 1.5;
@@ -265,4 +265,4 @@ TEST(RefractedSight, AllWaysThroughABallCount) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::refracted_ray_test

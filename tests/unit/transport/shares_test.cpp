@@ -7,7 +7,7 @@
 
 #include "transport/dimensions.h"
 
-namespace suite::test {
+namespace suite::test::shares_test {
 namespace {
 
 // The share of paths with all of their light that is left behind `events` events.
@@ -40,4 +40,4 @@ TEST(Roulette, LaterEventsHaveNumbersOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace suite::test
+}  // namespace suite::test::shares_test

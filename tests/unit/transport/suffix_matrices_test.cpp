@@ -6,7 +6,7 @@
 
 #include "transport/stokes_throughputs.h"
 
-namespace suite {
+namespace suite::suffix_matrices_test {
 namespace {
 
 constexpr size_t kBins = 3;
@@ -108,4 +108,4 @@ TEST(StokesThroughputs, PathsGoBackToWhatWasKept) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::suffix_matrices_test

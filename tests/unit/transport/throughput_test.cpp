@@ -8,7 +8,7 @@
 
 #include "math/sampling.h"
 
-namespace suite {
+namespace suite::throughput_test {
 namespace {
 
 // Factors are multiplied in another order than they come: some 50 roundings of 6e-8.
@@ -114,4 +114,4 @@ TEST_P(Throughput, NumbersAndSpectraThatMakeUpForEachOtherDoNotRunOut) {
 INSTANTIATE_TEST_SUITE_P(Bins, Throughput, testing::Values(2, 7, 8, 9, 31, 32, 33, 40, 47, 224));
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::throughput_test

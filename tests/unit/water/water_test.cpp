@@ -11,7 +11,7 @@
 #include "support/message_of.h"
 #include "water/constituents.h"
 
-namespace suite {
+namespace suite::water_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -152,4 +152,4 @@ TEST(Water, FaultsAreNamed) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::water_test

@@ -9,7 +9,7 @@
 #include "math/stats.h"
 #include "math/vec.h"
 
-namespace suite {
+namespace suite::waves_test {
 namespace {
 
 SeaState sea(WaveSpectrum spectrum, double wind, double fetch = 1e6) { return {spectrum, wind, fetch, 0.4, 1e4}; }
@@ -90,4 +90,4 @@ TEST(Waves, MoveByDispersion) {
 }
 
 }  // namespace
-}  // namespace suite
+}  // namespace suite::waves_test
