@@ -191,10 +191,9 @@ RESTS = {"direct": "course of the aerosol within the day", "diffuse": "the aeros
 
 
 def shown(day, quantity, ours, sigma):
-    """Curves of a picture: measured, and ours where that was measured."""
+    """Curves of a picture, where that was measured."""
     there = np.isfinite(day.measured[quantity])
-    return [("%s, measured" % quantity, day.hours, day.measured[quantity], None),
-            ("%s, ours" % quantity, day.hours, np.where(there, ours, np.nan), np.where(there, sigma, np.nan))]
+    return [("%s, measured" % quantity, day.hours[there], day.measured[quantity][there], None), ("%s, ours" % quantity, day.hours[there], ours[there], sigma[there])]
 
 
 def day_rows(context, day, result):
