@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .air import Table
 from .results import Result, Row, judged
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests/bench/air_paths"))
@@ -107,6 +108,20 @@ def sunlit(tools, paths, chosen, second):
     return row, lines
 
 
+def kilometre(context, tools, paths):
+    """Transmittance straight down one kilometre at 2.10 to 2.12 um, ours, LOWTRAN 7's and MODTRAN's; nothing where the package has no such path."""
+    rows = [r for r in paths.rows if (r[1], r[2], r[3]) == (1, 0, 1)][:1]
+    if not rows:
+        return []
+    ours, theirs = paths.ours(rows)[0], paths.theirs(rows)[0]
+    mean = lambda um, values: float(values[(um > 2.099) & (um < 2.121)].mean())
+    lowtran = Table(context, "modtran_kilometre", "profile: midlatitude_summer, aerosol: {model: rural, visibility_km: 23}, gases: lowtran",
+                    "{name: b0, center_um: 2.11, fwhm_um: 0.03, shape: rectangular}",
+                    "surface_elevation_km: 0\nobserver_altitude_km: 1\nsolar_zenith: 50\ncheck: false\n", ())["transm_up_dir"]
+    return ["Straight down 1 km, visibility 23 km, 2.10 to 2.12 um: transmittance of ours %.3f, of LOWTRAN 7 (`gases: lowtran`) %.3f, of MODTRAN 5.2.1 %.3f." % (
+        mean(ours[:, 0], tools.smooth(ours[None, :, 1])[0]), float(np.ravel(lowtran)[0]), mean(np.linspace(0.3, 14, len(theirs)), theirs[:, 0]))]
+
+
 def run(context):
     import paths as tools  # of tests/bench/air_paths
     result = Result()
@@ -126,5 +141,6 @@ def run(context):
                             "its runs have it (DISAZM is not set in card 1A).\n\n| um | as it is | averaged |\n|---|---|---|\n" + "\n".join(sun_lines) + "\n")
         result.notes.append("The ten paths with the largest error of transmittance.\n\n| from, along the ground, visibility | um | ours less MODTRAN's | cause |\n|---|---|---|---|\n"
                             + "\n".join(worst_ten(chosen, windows)) + "\n")
+    result.notes += kilometre(context, tools, paths)
     result.notes.append("Light that the ground reflects is not compared: the package's runs stand over a ground of its own.")
     return result

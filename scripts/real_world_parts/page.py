@@ -18,15 +18,15 @@ Ours beside what instruments measured, in one command; `--help` says what FOLDER
 - Ours: spread of the given aerosol, the gas model's error ([ACCURACY.md](../../libs/air/ACCURACY.md)), scalar scattering in the blue ([air_lut](../../formats/air_lut/FORMAT.md)).
 - The laws of the builtin gases are fitted to RRTMGP (scripts/bake_bands) and to nothing here; which bands take them was chosen by lines and REPTRAN, with 60
   of MODTRAN's paths in view.
-- Gases: builtin, but where a water continuum is named. With LOWTRAN 7's own laws and continuum of 1988 (`gases: lowtran`, builtin before) the same rows
-  had: Pasadena 6.80, 7.03, 10.4 %% rms; HyTES from 8.2 to 11.3 um 1.10 K, at 0.95 times the profile's water (now its fit runs to
-  the largest column of the table); paths of MODTRAN 0.0299 and 2.62 K rms, both seeds.
+- Gases: builtin, but where a water continuum is named. What LOWTRAN 7's own laws and continuum of 1988 (`gases: lowtran`, builtin before) leave stands in the
+  sections of Pasadena and HyTES. Along the paths of MODTRAN they left 0.0299 and 2.62 K rms, both seeds: an earlier run, which the command does not repeat.
 
 | instrument | place | bands | given | fitted | bias | rms | share | what explains the rest |
 |---|---|---|---|---|---|---|---|---|
 """
 
 
+PROMISED = 95  # percent of values within two standard deviations
 TITLES = {"pasadena": "AVIRIS-NG over Pasadena", "mfrsr": "Shadowband radiometer", "hytes": "HyTES over water", "surface": "Irradiance at the ground", "modtran_paths": "Paths of MODTRAN"}
 
 
@@ -37,10 +37,22 @@ def row_text(row):
         row.data, place, row.bands, row.given, row.fitted or "nothing", "%+.3g %s" % (row.bias, row.unit), "%.3g %s" % (row.rms, row.unit), share, row.rest)
 
 
+def short_of_share(rows):
+    """Instruments with rows whose share is below what two standard deviations promise; nothing where there are none."""
+    cells = []
+    for data in dict.fromkeys(r.data for r in rows):
+        known = [100 * r.share for r in rows if r.data == data and not math.isnan(r.share)]
+        short = [x for x in known if x < PROMISED]
+        if short:
+            cells.append("%s %s (%d of %d rows)" % (data, " to ".join(dict.fromkeys("%.0f %%" % x for x in (min(short), max(short)))), len(short), len(known)))
+    return "\nShares short of the %d %% of two standard deviations, so that a stated uncertainty is too small or something is missing: %s.\n" % (PROMISED, "; ".join(cells)) if cells else ""
+
+
 def markdown(results):
     seconds = ", ".join("%s %.0f s" % (name, r.seconds) for name, r in results.items())
     text = HEAD % {"seconds": seconds}
     text += "".join(row_text(row) for result in results.values() for row in result.rows)
+    text += short_of_share([row for result in results.values() for row in result.rows])
     for name, result in results.items():
         text += "\n## %s\n\n" % TITLES[name]
         text += "".join("- %s\n" % note for note in result.notes)

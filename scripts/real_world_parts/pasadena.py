@@ -2,6 +2,7 @@
 
 Only the water vapour column is fitted, to the depths of the bands at 0.94 and 1.13 um relative to their shoulders, which are in none of the
 windows that judge but for their edges."""
+import dataclasses
 import datetime
 
 import numpy as np
@@ -79,9 +80,10 @@ def window_means(nm, ours, theirs):
 class Air:
     """The tables that all targets share: states of water vapour under the mean of the photometers, and both photometers at one of them."""
 
-    def __init__(self, context, nm, fwhm, depths, zeniths):
+    def __init__(self, context, nm, fwhm, depths, zeniths, gases=""):
+        """gases: text of further keys of the atmosphere."""
         continuum = ", water_continuum: '%s'" % context.continuum if context.continuum else ""
-        air = "profile: midlatitude_summer, ozone_du: 300, ppm: {co2: 405}, aerosol: {model: rural, optical_depth_550: 0.05}, scene_height_m: 350" + continuum
+        air = "profile: midlatitude_summer, ozone_du: 300, ppm: {co2: 405}, aerosol: {model: rural, optical_depth_550: 0.05}, scene_height_m: 350" + continuum + gases
         low, high = min(depths), max(max(depths), 1.01 * min(depths))
         grid = "H2OSTR: %s\nAOT550: %s\nsurface_elevation_km: %g\nobserver_altitude_km: %g\nsolar_zenith: %s\ncheck: false\n"
         make = lambda name, water, depth: Table(context, name, air, gaussian_bands(nm, fwhm), grid % (water, depth, GROUND_KM, SENSOR_KM, zeniths))
@@ -162,6 +164,18 @@ def calibration_note(one, other):
             "leave no room for that: it is the radiance's calibration, or the reflectance as measured in the blue." % (one.name, other.name, cells))
 
 
+def lowtran_note(context, nm, fwhm, depths, zeniths, targets):
+    """What the rows leave with LOWTRAN 7's gases."""
+    air = Air(dataclasses.replace(context, work=context.work / "lowtran"), nm, fwhm, depths, zeniths, ", gases: lowtran")
+    closures = [Closure(context, nm, fwhm, t, air, zeniths.index(zenith_of(t))) for t in targets]
+    return "With LOWTRAN 7's own laws and continuum of 1988 (`gases: lowtran`, builtin before): %s." % ", ".join(
+        "%s %.3g %% rms (water %.2f g/cm2)" % (c.name, c.row(depths).rms, c.water) for c in closures)
+
+
+def zenith_of(target):
+    return round(sun_at(target[3])[0], 4)
+
+
 def run(context):
     result = Result()
     folder = context.data / "pasadena"
@@ -169,9 +183,9 @@ def run(context):
     nm, fwhm = 1e3 * center, 1e3 * width
     depths = aerosol_depths(folder)
     targets = [t for t in TARGETS if (context.held_out or not t[5]) and (folder / t[1]).exists()]
-    zeniths = sorted({round(sun_at(t[3])[0], 4) for t in targets})
+    zeniths = sorted({zenith_of(t) for t in targets})
     air = Air(context, nm, fwhm, depths, zeniths)
-    closures = [Closure(context, nm, fwhm, t, air, zeniths.index(round(sun_at(t[3])[0], 4))) for t in targets]
+    closures = [Closure(context, nm, fwhm, t, air, zeniths.index(zenith_of(t))) for t in targets]
     for closure in closures:
         result.rows.append(closure.row(depths))
         result.pictures["pasadena_" + closure.name.replace(" ", "_")] = spectra(
@@ -182,6 +196,7 @@ def run(context):
         result.notes.append(calibration_note(closures[0], closures[1]))
     result.notes.append("Surroundings: a dark target among brighter ground receives their light from the air (500 to 690 nm on the red field). No reflectance "
                         "of the surroundings was measured; the even ground of the table stands for them.")
-    result.notes.append("2.05 to 2.3 um, down 1 km in midlatitude summer at 2.10 to 2.12 um: ours 0.947, with LOWTRAN 7 (`gases: lowtran`) 0.918, MODTRAN 5.2.1 0.954 "
-                        "(section below).")
+    if len(nm) > 100 and not context.continuum:  # the whole spectrum, not the extract
+        result.notes.append("2.05 to 2.3 um: one kilometre of midlatitude summer at 2.10 to 2.12 um stands beside MODTRAN's in the section on its paths.")
+        result.notes.append(lowtran_note(context, nm, fwhm, depths, zeniths, targets))
     return result

@@ -40,8 +40,9 @@ def spectra(title, x_unit, y_unit, curves, points=False):
             out.extend('<circle cx="%.1f" cy="%.1f" r="1.6" fill="%s"/>' % (*p, colour) for p in zip(px(x[fine]), py(y[fine])))
         else:
             out.append('<polyline points="%s" fill="none" stroke="%s" stroke-width="1.2"/>' % (path(x[fine], y[fine]), colour))
+    first, step = (LEFT + 330, 130) if len(curves) <= 2 else (LEFT + 200, 115)
     for k, (name, *_) in enumerate(curves):
-        out.append('<text x="%d" y="%d" fill="%s">%s</text>' % (LEFT + 330 + 130 * k, 20, COLOURS[k], html.escape(name)))
+        out.append('<text x="%d" y="%d" fill="%s">%s</text>' % (first + step * k, 20, COLOURS[k], html.escape(name)))
     out.append('<text x="%d" y="20">%s</text><text x="%d" y="%d" text-anchor="middle">%s</text>' % (LEFT, html.escape(title), (LEFT + WIDTH) // 2, HEIGHT - 6, html.escape(x_unit)))
     out.append('<text x="14" y="%d" transform="rotate(-90 14 %d)" text-anchor="middle">%s</text></svg>' % (HEIGHT // 2, HEIGHT // 2, html.escape(y_unit)))
     return "\n".join(out) + "\n"

@@ -180,12 +180,20 @@ def row_of(day, quantity, ours, sigma, fitted, rest, given):
     found = judged(ours[fine], theirs[fine], both)
     mean = theirs[fine].mean()
     return Row(day.network, day.place, "%s, %d means" % (quantity, fine.sum()), given, fitted, "W/m2", held_out=day.held_out,
+               details={"quantity": quantity, "percent": float(100 * off.mean() / mean), "least_depth": LEAST in fitted},
                rest="%+.1f, %.1f %% of %.0f W/m2; uncertainty: theirs %.1f, ours %.1f W/m2; %s" % (
                    100 * off.mean() / mean, 100 * found["rms"] / mean, mean, day.error(quantity)[fine].mean(), sigma[fine].mean(), rest), **found)
 
 
+LEAST = ", the least of the table"  # of a fitted depth
 RESTS = {"direct": "course of the aerosol within the day", "diffuse": "the aerosol's absorption and size, ground around",
          "global": "both, and the pyranometer's cosine response", "longwave": "temperature and water above the screen, which was not measured"}
+
+
+def shown(day, quantity, ours, sigma):
+    """Curves of a picture, where that was measured."""
+    there = np.isfinite(day.measured[quantity])
+    return [("%s, measured" % quantity, day.hours[there], day.measured[quantity][there], None), ("%s, ours" % quantity, day.hours[there], ours[there], sigma[there])]
 
 
 def day_rows(context, day, result):
@@ -195,12 +203,12 @@ def day_rows(context, day, result):
     ozone = next(v for k, v in OZONE.items() if k in day.place)
     given = "%s, screen, ozone %d DU%s" % (season(day).replace("_", " "), ozone, "" if "direct" in day.measured else ", AOD %.2f" % depth)
     fitted = "aerosol depth %.3f (single times +- %.3f), by the direct beam%s" % (
-        depth, spread, ", the least of the table" if depth <= DEPTHS[0] else "") if "direct" in day.measured else ""
+        depth, spread, LEAST if depth <= DEPTHS[0] else "") if "direct" in day.measured else ""
     curves = []
     for quantity in ("direct", "diffuse", "global"):
         if quantity in day.measured:
             result.rows.append(row_of(day, quantity, *light[quantity], fitted, RESTS[quantity], given))
-            curves += [("%s, measured" % quantity, day.hours, day.measured[quantity], None), ("ours", day.hours, light[quantity][0], light[quantity][1])]
+            curves += shown(day, quantity, *light[quantity])
     result.pictures[name] = spectra("%s, %s" % (day.network, day.place), "h UTC", "W/m2", curves[-4:], True)
     if "longwave" in day.measured:
         ours, sigma = Longwave(context, day, name + "_sky").of(day)
@@ -209,6 +217,18 @@ def day_rows(context, day, result):
             season(day).replace("_", " "), water.min(), water.max())))
         result.pictures[name + "_longwave"] = spectra("%s, %s, longwave" % (day.network, day.place), "h UTC", "W/m2", [
             ("measured", day.hours, day.measured["longwave"], day.error("longwave")), ("ours", day.hours, ours, sigma)], True)
+
+
+def least_note(rows):
+    """What the days say whose aerosol depth came out as the least of the table; nothing where there is none."""
+    least = [r for r in rows if r.details.get("least_depth")]
+    if not least:
+        return []
+    cells = ["%s %s %%" % (q, ", ".join("%+.1f" % r.details["percent"] for r in least if r.details["quantity"] == q)) for q in ("direct", "diffuse")]
+    places = [r.place for r in least if r.details["quantity"] == "direct"]
+    wet = ["%s %+.1f %%" % (r.place, r.details["percent"]) for r in rows if r.details.get("quantity") == "longwave"]
+    return ["Where the depth is the table's least (%s), ours is off by: %s. Too little of both asks for less water than the screen's humidity makes, and for some aerosol, which one number "
+            "cannot separate. Longwave says the same of the water where it is too much: %s." % ("; ".join(places), "; ".join(cells), "; ".join(wet) or "not measured")]
 
 
 def run(context):
@@ -221,8 +241,7 @@ def run(context):
         "Profiles: AFGL's, whose difference from the screen's temperature fades with %.1f km; 0.7 and 3 km and %.0f %% of the water column make our longwave's uncertainty; the aerosol's own longwave "
         "(1 to 3 W/m2 of haze) is left out." % (FADING_KM, 100 * WATER_SHARE),
         "Sunlight's uncertainty of ours: the spread of the depth of single times, %.0f %% of water, a third of the albedo, %.0f %% of the aerosol's diffuse light." % (100 * WATER_SHARE, 100 * AEROSOL_SHARE),
-        "Where the depth is the table's least, ours is 0.3 to 1.4 % low in the direct beam and 12 to 21 % low in the diffuse light: together they ask for less water than "
-        "the screen's humidity makes, and for some aerosol, which one number cannot separate. At Payerne by day a longwave 5 % too large says the same of the water.",
+        *least_note(result.rows),
         "Pyrheliometers see 2.5 degrees around the sun and are calibrated by cavities that see beyond 4 um, too; neither is in ours (together some 0.5 to 1 % of the direct beam, an estimate).",
         "The files name neither aerosol depth nor water vapour: depth is the one number fitted, to the direct beam; diffuse, global and longwave are not fitted."]
     return result
