@@ -86,6 +86,19 @@ std::string LutTable::name_of(size_t state) const {
   return text;
 }
 
+namespace {
+
+// What is no air (more water than a level can hold) is refused here and not after hours, when its turn comes.
+void check_states(const AirSpec& air, const LutTable& table) {
+  for (size_t k = 0; k < table.states(); ++k) try {
+      air_of_state(air, table, k);
+    } catch (const Error& e) {
+      throw Error(e.where(), "no air has " + table.name_of(k) + ": " + e.message(), e.hint());
+    }
+}
+
+}  // namespace
+
 LutTable make_lut(const AirSpec& air, std::vector<Band> bands, LutAxes axes) {
   for (const LutAxis& axis : axes) check_axis(axis);
   if (of(axes, LutAxisOf::sun_zenith).values.empty())
@@ -113,6 +126,7 @@ LutTable make_lut(const AirSpec& air, std::vector<Band> bands, LutAxes axes) {
   std::ranges::sort(bands, {}, &Band::center_um);
   LutTable table{std::move(axes), std::move(bands), {}};
   for (const Band& b : table.bands) table.solar_irradiance.push_back(kMicrowatts * band_mean(b, solar_irradiance()));
+  check_states(air, table);
   return table;
 }
 

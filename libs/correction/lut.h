@@ -57,7 +57,8 @@ struct LutFineness {
 double widest_bin(const LutTable& table, const LutFineness& fineness);
 
 // Completes the axes from the air and their defaults. Error: a value out of its range, not ascending, an aerosol's
-// depth for air without any, a sensor that is not above the ground, no angle of the sun, more than 1e7 views.
+// depth for air without any, a sensor that is not above the ground, no angle of the sun, more than 1e7 views, a state
+// that is no air (5 g/cm2 of water above 2 km).
 LutTable make_lut(const AirSpec& air, std::vector<Band> bands, LutAxes axes);
 // The air of a state. Water vapour and ozone are columns above the ground, depths of aerosol as well.
 AirSpec air_of_state(const AirSpec& air, const LutTable& table, size_t state);

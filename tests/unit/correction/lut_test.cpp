@@ -52,6 +52,10 @@ TEST(Lut, AxesAreCompletedAndChecked) {
   a = axes({30});
   values(a, LutAxisOf::height) = {1}, values(a, LutAxisOf::elevation) = {0, 2};
   EXPECT_THAT(message(summer(), a), HasSubstr("is not above the ground at surface_elevation_km 2"));
+  a = axes({30});
+  values(a, LutAxisOf::water) = {1, 12}, values(a, LutAxisOf::elevation) = {0, 4};
+  EXPECT_THAT(message(summer(), a), HasSubstr("no air has H2OSTR 12, "));
+  EXPECT_THAT(message(summer(), a), HasSubstr("its gases sum to"));
   AirSpec clean = summer();
   clean.aerosol.reset();
   a = axes({30});
