@@ -204,7 +204,8 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
     for (const Task& task : sim.sensors[s]->tasks())
       for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
-  note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors, options.pipeline)));
+  note("parts of the renderer:\n" +
+       text_of(features_of(scene, sim.sources, sim.sensors, options.pipeline, sim.lidars.size())));
   look_through_tables(sim.sources, scene, sim.sensors);
   for (const std::string& sentence : describe_sources(sim.sources, scene, sim.sensors)) note(sentence);
   for (const Diagnostic& d : diagnose_air(sim.sources, scene, sim.sensors, options)) emit(d);

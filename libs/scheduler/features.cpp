@@ -72,7 +72,8 @@ void add_techniques(const TechniqueFacts& facts, std::vector<FeatureUse>& to) {
 }  // namespace
 
 std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sources,
-                                    std::span<const std::unique_ptr<Sensor>> sensors, const PipelineOptions& options) {
+                                    std::span<const std::unique_ptr<Sensor>> sensors, const PipelineOptions& options,
+                                    size_t laser_radars) {
   size_t fitted = 0, warm = scene.temperatures.size();
   for (const Material& m : scene.materials) fitted += m.surface.bundle != nullptr, warm += m.temperature_k > 0;
   std::set<std::string> truth;
@@ -92,7 +93,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
                               count("emission", warm, "temperatures", "no temperature shows in any window")};
   add_lights(sources, all);
   all.push_back(source("atmosphere", sources.has_air()));
-  add_techniques(technique_facts(scene, sources, options), all);
+  add_techniques(technique_facts(scene, sources, options, laser_radars), all);
   all.push_back(source("earth", sources.earth.has_value()));
   all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
   all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});

@@ -19,10 +19,11 @@ struct FeatureUse {
   bool used = false;
   std::string why;  // one clause
 };
-// One entry a feature, always the same ones in the same order. scene: as it was loaded.
+// One entry a feature, always the same ones in the same order. scene: as it was loaded. laser_radars: how many look at
+// it beside the sensors.
 std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sources,
                                     std::span<const std::unique_ptr<Sensor>> sensors,
-                                    const PipelineOptions& options = {});
+                                    const PipelineOptions& options = {}, size_t laser_radars = 0);
 // The same as lines of text.
 std::string text_of(const std::vector<FeatureUse>& features);
 // What a feature is and what it costs when it is not used; nothing for a name that is none.

@@ -34,8 +34,10 @@ constexpr TechniqueCondition kSplitting[] = {
     kMedia,
     kStandard,
     kSampled,
-    {[](const Facts& f) { return f.beams; }, "a sun or a moon", "no sun or moon in the simulation"},
-    {[](const Facts& f) { return f.smooth == 0; }, "no smooth refracting material",
+    {[](const Facts& f) { return f.beams || f.laser_radars > 0; }, "a sun, a moon or a laser radar",
+     "no sun, moon or laser radar in the simulation"},
+    {[](const Facts& f) { return f.smooth == 0 || f.laser_radars > 0; },
+     "no smooth refracting material; paths of laser radars need none of this",
      "paths in media behind smooth interfaces have multi-vertex NEE"},
     {[](const Facts& f) { return f.options.side_flights; }, "splitting switched on", "switched off"}};
 constexpr TechniqueCondition kEquiangular[] = {
@@ -79,7 +81,10 @@ constexpr TechniqueRow kRows[] = {
      "scatter forwards.",
      kMultiVertex},
     {ListedTechnique::side_vertex,
-     "A second free flight towards the sun or the moon from vertices in media that scatter forwards.", kSplitting},
+     "A second free flight towards the sun or the moon from vertices in media that scatter forwards. Paths of laser "
+     "radars leave such vertices, and surfaces beside such media, twice: as they scatter, and towards the end where "
+     "they did not begin (laser or receiver).",
+     kSplitting},
     {ListedTechnique::equiangular,
      "One more scattering vertex on flights that begin near a point lamp, in mean free paths, by the angle that the "
      "lamp "
@@ -126,9 +131,11 @@ std::optional<std::string> explain_technique(const std::string& name) {
   return text + "\n";
 }
 
-TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options) {
+TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options,
+                               size_t laser_radars) {
   TechniqueFacts f;
   f.options = options;
+  f.laser_radars = laser_radars;
   constexpr double kNever = 1e-12;
   for (const LightSpecPtr& light : sources.lights) {
     const size_t parts = light->in_scene() ? light->entries() : light->hardly_met(1).size();

@@ -22,6 +22,7 @@ struct TechniqueFacts {
   bool small_lights = false;  // sun, moon or lamps: what continuations hardly find
   bool sized_lights = false;  // of them such as have a size, so that continuations may meet them
   bool beams = false;         // sun or moon
+  size_t laser_radars = 0;    // whose paths look for their other end
   size_t points = 0;          // lamps that are points
   size_t media = 0;
   bool even_media = false;                      // media of the scene, and no traced air
@@ -29,8 +30,9 @@ struct TechniqueFacts {
   bool real_air = false, field = false, adjacency = false;  // of the air: a profile, a diffuse field, adjacency wanted
 };
 // Of the scene as it was loaded.
-TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options);
-// The same with its materials as they were baked for a spectral state.
+TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options,
+                               size_t laser_radars = 0);
+// The same, without laser radars, with its materials as they were baked for a spectral state.
 TechniqueFacts technique_facts(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options,
                                const Optics& optics);
 

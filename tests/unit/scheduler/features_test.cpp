@@ -87,6 +87,38 @@ TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
   EXPECT_EQ(said(water, sun, paper), "the paper's estimator");
 }
 
+// Paths of laser radars branch towards their other end, in the dark and behind smooth interfaces, too.
+TEST(Features, SplittingNeedsMediaAndASunOrALaserRadar) {
+  const auto grey = test::material("grey", test::lambert(0.5));
+  const auto glass = test::material("m", {"dielectric", {}, {{"index", Curve::constant(1.33)}}, {}, nullptr});
+  const auto fog = test::scene_of({test::quad(1, 0, 0)}, {grey}),
+             water = test::scene_of({test::quad(1, 0, 0)}, {glass});
+  fog->media.emplace_back(), water->media.emplace_back();
+  const auto clear = test::scene_of({test::quad(1, 0, 0)}, {grey});
+  SourceSpecs sun;
+  SunSpec disk;
+  disk.irradiance = Curve::constant(1);
+  sun.add(disk);
+  PipelineOptions off;
+  off.side_flights = false;
+  const auto said = [](const Scene& s, const SourceSpecs& sources, size_t laser_radars,
+                       const PipelineOptions& options = {}) {
+    for (const FeatureUse& f : features_of(s, sources, {}, options, laser_radars))
+      if (f.name == name_of(ListedTechnique::side_vertex)) return (f.used ? "" : "not: ") + f.why;
+    return std::string("missing");
+  };
+  EXPECT_EQ(said(*fog, {}, 0), "not: no sun, moon or laser radar in the simulation");
+  EXPECT_EQ(said(*fog, {}, 1), "media in the scene");
+  EXPECT_EQ(said(*fog, sun, 0), "media in the scene");
+  EXPECT_EQ(said(*fog, sun, 1, off), "not: switched off");
+  EXPECT_EQ(said(*water, sun, 0), "not: paths in media behind smooth interfaces have multi-vertex NEE");
+  EXPECT_EQ(said(*water, sun, 1), "media in the scene");
+  EXPECT_EQ(said(*clear, sun, 1), "not: no media in the scene");
+  const std::string text = explain_use(name_of(ListedTechnique::side_vertex)).value_or("");
+  EXPECT_THAT(text, testing::HasSubstr("Paths of laser radars leave such vertices"));
+  EXPECT_THAT(text, testing::HasSubstr("\n  a sun, a moon or a laser radar\n"));
+}
+
 // Texts, `--explain`, the list of parts and the table of conditions say the same words, those of one list.
 TEST(Features, TechniquesHaveOneName) {
   std::set<std::string> with_conditions;
