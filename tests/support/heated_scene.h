@@ -30,7 +30,7 @@ inline TemperatureSpec heat_of(std::vector<SlabLayer> layers, std::map<std::stri
 class BalancedScene {
  public:
   BalancedScene(std::vector<Mesh> meshes, std::vector<Material> materials, std::vector<TemperatureSpec> temperatures,
-              const HeatSpec& spec) {
+                const HeatSpec& spec) {
     auto made = scene_of(std::move(meshes), std::move(materials));
     for (uint32_t m = 0; m < temperatures.size(); ++m) made->temperatures.push_back({m, std::move(temperatures[m])});
     scene = std::move(made);

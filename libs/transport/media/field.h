@@ -64,7 +64,8 @@ struct Constituent {
   bool operator==(const Constituent& o) const { return medium == o.medium && kelvin == o.kelvin; }
 };
 
-inline constexpr double kEndlessWay = 1e30;  // m, for an infinite way: finite when multiplied, opaque for any coefficient
+inline constexpr double kEndlessWay =
+    1e30;  // m, for an infinite way: finite when multiplied, opaque for any coefficient
 
 // Walks a ray through the field, nearest stretch first.
 class FieldWalk {

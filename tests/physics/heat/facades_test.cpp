@@ -95,7 +95,7 @@ Box traced_box(const HeatWeather& weather, double noon) {
   spec.step = 1800, spec.elements = 60;
   const WeatherLoads loads = weather_loads(weather, spec);
   const BalancedScene scene({box({-1, -1, 10}, {1, 1, 12}, 0, true)}, {warmed("black", 0, 1)},
-                          {heat_of({}, {}, {{"back", "adiabatic"}})}, spec);
+                            {heat_of({}, {}, {{"back", "adiabatic"}})}, spec);
   const Sunlight sun =
       trace_sunlight(*scene.tracer, *scene.elements, *scene.faces, scene.optics, loads.course, {8, 626, 1});
   Box out;

@@ -184,7 +184,7 @@ TEST(Pasture, WithTheModelOfWetness) {
   std::map<std::string, double> numbers = pasture.air().numbers;
   numbers["wetness"] = kWetness;
   const BalancedScene scene({quad(50, 0, 0)}, {warmed("grass", pasture.albedo, kEmissivity)},
-                          {heat_of(pasture.layers(), numbers, {{"convection", "constant"}})}, spec);
+                            {heat_of(pasture.layers(), numbers, {{"convection", "constant"}})}, spec);
   const HeatResult result = scene.solve(weather_loads(as_it_is(weather), spec), spec);
   const auto kelvin = [&](size_t k) {
     double sum = 0;
