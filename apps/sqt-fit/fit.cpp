@@ -40,16 +40,20 @@ sqt::AlignedSource::Options source_options(const SqtFitOptions& o) {
   return options;
 }
 
+using MuellerPtr = std::shared_ptr<const sqt::MuellerTable>;
+
 // What the frame around trees and totals takes: known once something has been packed. The figures of error are not
 // known yet; digits without pattern compress as badly as theirs, and 64 bytes are left for luck.
-size_t container_bytes(const FitInput& input, const sqt::AlignedSource& source) {
-  const sqt::AlignedFit first = sqt::encode_aligned(source, 1.0);
+size_t container_bytes(const SqtProvenance& provenance, const sqt::AlignedSource& source, size_t channels,
+                       const MuellerPtr& mueller) {
+  sqt::AlignedFit first = sqt::encode_aligned(source, 1.0);
+  first.data.mueller = mueller;
   double last = 0;
   auto digits = [&last] { return last = std::fmod(last + 0.6180339887498949, 1.0); };
-  std::vector<sqt::ErrorFigures> errors(input.function->info().wavelength_um.size() + 1);
+  std::vector<sqt::ErrorFigures> errors(channels + 1);
   for (sqt::ErrorFigures& e : errors)
     e = {digits(), digits(), digits(), digits(), digits(), digits(), digits(), digits(), digits()};
-  return pack_sqt(first, input.provenance, errors).size() - first.sheets_bytes.size() - first.totals_bytes.size() + 64;
+  return pack_sqt(first, provenance, errors).size() - first.sheets_bytes.size() - first.totals_bytes.size() + 64;
 }
 
 }  // namespace
@@ -109,23 +113,34 @@ Outcome fit_function(const SqtFitOptions& o, const FitInput& input, const std::f
   out.reference = std::make_unique<const sqt::Reference>(*input.function, kReferencePairs, 1, advance(0.2));
   const sqt::Reference& reference = *out.reference;
   judge_input(input, reference, o.strict);
+  SqtProvenance provenance = input.provenance;
+  MuellerPtr mueller;
+  if (input.mueller) {
+    out.mueller = sqt::fit_mueller(*input.mueller, o.mueller_error);
+    mueller = out.mueller->table, provenance.mueller = out.mueller->errors;
+  }
   if (o.method == "aligned") {
     const sqt::FitTarget target{o.max_error, static_cast<size_t>(o.max_bytes), min_peak(o, input)};
     sqt::FitResult result = sqt::fit_to(
         *input.function, reference, source_options(o), target,
-        [&](const sqt::AlignedSource& s) { return container_bytes(input, s); }, advance(0.8));
+        [&](const sqt::AlignedSource& s) {
+          return container_bytes(provenance, s, input.function->info().wavelength_um.size(), mueller);
+        },
+        advance(0.8));
     out.source = std::move(result.source);
+    result.fit.data.mueller = mueller;
     out.bundle = sqt::make_bundle(result.fit.data);
     out.errors = reference.measure(*out.bundle);
-    out.file = pack_sqt(result.fit, input.provenance, out.errors);
+    out.file = pack_sqt(result.fit, provenance, out.errors);
     out.error_met = result.error_met;
     out.peak_met = result.peak_met;
     out.bytes_met = !o.max_bytes || out.file.size() <= static_cast<size_t>(o.max_bytes);
   } else {
-    const sqt::PaperData data = sqt::fit_paper(*input.function, paper_options(o), advance(0.8));
+    sqt::PaperData data = sqt::fit_paper(*input.function, paper_options(o), advance(0.8));
+    data.mueller = mueller;
     out.bundle = sqt::make_bundle(data);
     out.errors = reference.measure(*out.bundle);
-    out.file = pack_sqt(data, input.provenance, out.errors);
+    out.file = pack_sqt(data, provenance, out.errors);
   }
   out.seconds = watch.seconds();
   return out;

@@ -3,12 +3,14 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "input.h"
 #include "options.h"
 #include "sqt_fit/errors.h"
 #include "sqt_fit/fit.h"
+#include "sqt_fit/mueller_fit.h"
 
 namespace suite {
 
@@ -23,7 +25,8 @@ class Stopwatch {
 struct Outcome {
   std::vector<std::byte> file;  // the .sqt
   std::shared_ptr<const sqt::Bundle> bundle;
-  std::vector<sqt::ErrorFigures> errors;  // per channel, and overall
+  std::vector<sqt::ErrorFigures> errors;   // per channel, and overall
+  std::optional<sqt::MuellerFit> mueller;  // where the input has matrices
   bool error_met = true, bytes_met = true, peak_met = true;
   double seconds = 0;                                // of surveying, fitting and measuring
   std::unique_ptr<const sqt::Reference> reference;   // what the errors were measured against

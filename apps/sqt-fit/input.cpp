@@ -53,6 +53,17 @@ std::shared_ptr<const sqt::Function> interpolated(const sqt::Samples& samples, c
   return sqt::interpolate(samples);
 }
 
+// What was filled in, and what cannot be.
+void report_matrices(const sqt::MuellerBrdf& brdf, const SqtFitOptions& options) {
+  if (options.swap) throw UsageError("--swap: matrices say themselves which direction is the light's");
+  if (brdf.missing_share() > 0)
+    warn(strf("%s: %.3g %% of the directions have no matrix and take the nearest one", options.input.c_str(),
+              100 * brdf.missing_share()));
+  if (!brdf.info().bilateral)
+    note(strf("%s: m11 at phi_d and -phi_d differs by %.2g %%; both sides are kept", options.input.c_str(),
+              100 * brdf.asymmetry()));
+}
+
 }  // namespace
 
 FitInput load_input(const SqtFitOptions& options) {
@@ -76,6 +87,8 @@ FitInput load_input(const SqtFitOptions& options) {
       input.function = std::move(*function);
     else
       input.function = interpolated(std::get<1>(measured), options.input);
+    input.mueller = std::dynamic_pointer_cast<const sqt::MuellerBrdf>(input.function);
+    if (input.mueller) report_matrices(*input.mueller, options);
     if (options.swap) input.function = sqt::swapped(std::move(input.function));
     input.provenance.input = options.input;
     input.provenance.input_sha256 = sha256(read_bytes(options.input));

@@ -63,6 +63,10 @@ void declare(Cli& cli, SqtFitOptions& o) {
              "aligned: lobes at view angles of 20, 45 and 70 deg reach at least this share of the data's, 0-1; 0 = no "
              "matter; without it 0.9, of phase functions 0.98",
              "P");
+  cli.option("--mueller-error", o.mueller_error,
+             "of Mueller matrices: leave out angles while the rms error of the elements over m11 is at most this; 0 = "
+             "keep all",
+             "E");
   cli.option("--report", o.report, "write sizes and errors as JSON", "FILE.json");
   cli.option(
       "--curve", o.curve,

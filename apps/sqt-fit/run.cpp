@@ -50,6 +50,8 @@ void check_options(const SqtFitOptions& o) {
     throw UsageError(strf("--order %lld is out of range; give %s, or 0", o.order, paper ? "1 to 8" : "3 to 12"));
   if (o.views && (o.views < 2 || o.views > 64))
     throw UsageError(strf("--views %lld is out of range; give 2 to 64, or 0", o.views));
+  if (!(o.mueller_error >= 0 && o.mueller_error <= 1))
+    throw UsageError(strf("--mueller-error %g is out of range; give 0 to 1", o.mueller_error));
   if (!(o.max_error >= 0) || o.max_bytes < 0 || !(o.threshold >= 0))
     throw UsageError("--max-error, --max-bytes and --threshold must not be negative");
 }
@@ -79,6 +81,11 @@ Json report_json(const SqtFitOptions& o, const FitInput& input, const Outcome& o
   if (o.method == "aligned") j.set("min_peak", min_peak(o, input));
   j.set("conventions", input.provenance.conventions);
   j.set("units", "value 1/sr without cosine; rmse 1/sr; other errors relative");
+  if (out.mueller) {
+    Json m = mueller_error_json(out.mueller->errors);
+    m.set("changed", out.mueller->changed);
+    j.set("mueller", std::move(m));
+  }
   j.set("overall", error_json(out.errors.back()));
   Json channels = Json::array();
   for (size_t c = 0; c + 1 < out.errors.size(); ++c) {
@@ -98,6 +105,16 @@ void print_summary(const SqtFitOptions& o, const Outcome& out) {
             100 * e.cos_rmse, e.rmse, 100 * e.total_error, 100 * e.reciprocity_error));
   note(strf("  peaks at 20/45/70 deg: %.3f %.3f %.3f of the data; largest sampling weight %.2f", e.peak_ratio_20,
             e.peak_ratio_45, e.peak_ratio_70, e.max_weight));
+  if (!out.mueller) return;
+  const sqt::MuellerFit& m = *out.mueller;
+  const sqt::HalfGrid& g = m.table->data().grid;
+  note(strf(
+      "  matrices at %zu x %zu x %zu angles (theta_h, theta_d, phi_d): rms %.2g of m11, by light %.2g, largest %.2g",
+      g.theta_h.size(), g.theta_d.size(), g.phi_d.size(), m.errors.rms, m.errors.lit, m.errors.largest));
+  if (m.changed > 0)
+    note(strf(
+        "  %.3g %% of the matrices could not exist (Cloude) and were made possible; the largest change is %.2g rms",
+        100 * m.changed, m.most_changed));
 }
 
 // Error against size and time over a range of the method's knob.

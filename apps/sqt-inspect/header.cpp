@@ -46,6 +46,22 @@ Json to_json(const Params& p) {
   return code == std::errc() && stop == text.data() + text.size() ? Json(number) : Json(text);
 }
 
+// Which angles matrices stand at, how possible they are, and the degree to which the mirror direction polarises.
+std::string mueller_text(const sqt::MuellerTable& table) {
+  const sqt::HalfGrid& g = table.data().grid;
+  const std::vector<double>& um = table.data().wavelength_um;
+  std::string t = strf("  matrices   theta_h %zu, theta_d %zu, phi_d %zu angles, %g to %g um; least eigenvalue %.2g\n",
+                       g.theta_h.size(), g.theta_d.size(), g.phi_d.size(), um.front(), um.back(), table.least());
+  std::vector<Mueller> m(um.size());
+  for (const double deg : {30.0, 55.0, 75.0}) {
+    table.at(dir_from_angles(deg * kDegree, 0), dir_from_angles(deg * kDegree, kPi), m);
+    t += strf("  m12/m11 %2.0f", deg);
+    for (const Mueller& x : m) t += strf(" %.4f", x(0, 1));
+    t += '\n';
+  }
+  return t;
+}
+
 }  // namespace
 
 Json header_json(const SqtFile& file, const std::string& path) {
@@ -80,6 +96,7 @@ Json header_json(const SqtFile& file, const std::string& path) {
   j.set("max_order", i.max_order);
   j.set("leaves", i.leaves);
   j.set("has_delta", i.has_delta());
+  j.set("has_matrices", i.mueller != nullptr);
   j.set("stored_header", to_json(Params::parse_text(file.header, path)));
   return j;
 }
@@ -100,6 +117,7 @@ std::string header_text(const SqtFile& file, const std::string& path) {
   t += strf("  slices     %zu views, %.1f to %.1f deg\n", i.views.size(), i.views.front().theta / kDegree,
             i.views.back().theta / kDegree);
   t += strf("  leaves     %zu%s\n", i.leaves, i.has_delta() ? ", and a Dirac lobe" : "");
+  if (i.mueller) t += mueller_text(*i.mueller);
   for (const double deg : {0.0, 45.0, 75.0}) {
     t += strf("  total %2.0f  ", deg);
     for (size_t c = 0; c < bundle.channels(); ++c)

@@ -8,6 +8,8 @@
 #include "formats/cornell/cornell.h"
 #include "formats/measured/measured.h"
 #include "formats/merl/merl.h"
+#include "formats/mueller_csv/mueller_csv.h"
+#include "formats/pbsdf/pbsdf.h"
 #include "formats/rgl/rgl.h"
 #include "formats/samples/samples.h"
 
@@ -15,18 +17,18 @@ namespace suite {
 
 namespace {
 
-enum class Kind { unknown, rgl, merl, samples, cornell, csv };
+enum class Kind { unknown, tensor, merl, samples, cornell, csv };
 
 Kind kind_of(std::span<const std::byte> bytes, const std::string& path) {
   auto starts = [&](const char* text, size_t n) {
     return bytes.size() >= n && std::memcmp(bytes.data(), text, n) == 0;
   };
-  if (starts("tensor_file", 12)) return Kind::rgl;
+  if (starts("tensor_file", 12)) return Kind::tensor;
   if (starts("RAWBH10A", 8) || starts("RAWBS10A", 8)) return Kind::samples;
   const int32_t ninety[2] = {90, 90};
   if (bytes.size() >= 8 && std::memcmp(bytes.data(), ninety, 8) == 0) return Kind::merl;
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".bsdf") return Kind::rgl;
+  if (extension == ".bsdf" || extension == ".pbsdf") return Kind::tensor;
   if (extension == ".binary") return Kind::merl;
   if (extension == ".brdf") return Kind::cornell;
   if (extension == ".csv") return Kind::csv;
@@ -58,7 +60,9 @@ Measured read_measured(const std::string& path) {
   const std::vector<std::byte> bytes = read_bytes(path, size_t{1} << 32);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   switch (kind_of(bytes, path)) {
-    case Kind::rgl:
+    case Kind::tensor:
+      if (is_pbsdf(TensorFile(bytes, path)))
+        return std::static_pointer_cast<const sqt::Function>(parse_pbsdf(bytes, path));
       return std::static_pointer_cast<const sqt::Function>(parse_rgl(bytes, path));
     case Kind::merl:
       return std::static_pointer_cast<const sqt::Function>(parse_merl(bytes, path));
@@ -67,6 +71,7 @@ Measured read_measured(const std::string& path) {
     case Kind::cornell:
       return parse_cornell(text, path);
     case Kind::csv:
+      if (is_mueller_csv(text)) return std::static_pointer_cast<const sqt::Function>(parse_mueller_csv(text, path));
       return parse_brdf_csv(text, path);
     case Kind::unknown:
       break;
@@ -90,9 +95,14 @@ std::string measured_formats() {
          "  .bsdf     RGL tensor file, rgb or spectral, isotropic or anisotropic; light = theta_i; divided by "
          "cos(out), from\n"
          "            88 deg on by cos 88 deg; negative values count as 0\n"
+         "  .pbsdf    Mueller matrices as a tensor file (Baek et al. 2020, Mitsuba), isotropic; m11 is fitted, the "
+         "matrices\n"
+         "            over it are kept as a table with its error\n"
          "  RAWBH10A, RAWBS10A   raw sample text, per sr without cosine (recognised by its first line)\n"
          "  .brdf     Cornell text, per sr without cosine\n"
          "  .csv      theta_o, phi_o, theta_i, phi_i [rad, or _deg], wavelength_um, value [1/sr, no cosine]\n"
+         "  .csv      of Mueller matrices: theta_h_deg, theta_d_deg, phi_d_deg, wavelength_um, m11 to m44 [1/sr], as "
+         ".pbsdf\n"
          "Directions below the horizon hold no data.\n";
 }
 

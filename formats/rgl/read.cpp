@@ -1,96 +1,22 @@
-// The container: a list of named arrays, and the checks that they make a BRDF.
+// The fields of a tensor file, and the checks that they make a BRDF.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <map>
 
-#include "base/bytes.h"
 #include "base/files.h"
 #include "formats/rgl/rgl.h"
+#include "formats/tensor_file/tensor_file.h"
 
 namespace suite {
 
 namespace {
 
-constexpr size_t kTypeSize[12] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
-constexpr int kUint8 = 1, kFloat32 = 10;
+using Field = TensorFile::Field;
+constexpr TensorFile::Type kUint8 = TensorFile::uint8, kFloat32 = TensorFile::float32;
 
-struct Field {
-  int type;
-  size_t offset, count;
-  std::vector<size_t> shape;
-};
-
-class TensorFile {
- public:
-  TensorFile(std::span<const std::byte> bytes, const std::string& file) : reader_(bytes, file) {
-    const auto magic = bytes.size() >= 12 ? reader_.take(12, "the magic") : std::span<const std::byte>{};
-    if (magic.empty() || std::memcmp(magic.data(), "tensor_file\0", 12) != 0) {
-      reader_.seek(0, "the start");
-      throw reader_.error("is not a tensor file: the magic is missing", "an RGL .bsdf file starts with 'tensor_file'");
-    }
-    const int major = reader_.get<uint8_t>("the version"), minor = reader_.get<uint8_t>("the version");
-    if (major != 1 || minor != 0)
-      throw reader_.error(strf("tensor file version %d.%d is unknown", major, minor), "version 1.0 is read");
-    const uint32_t n = reader_.get<uint32_t>("the number of fields");
-    // The smallest field header has 13 bytes.
-    if (n > reader_.left() / 13) throw reader_.error(strf("declares %u fields, more than the file can hold", n));
-    for (uint32_t i = 0; i < n; ++i) read_field();
-  }
-
-  bool has(const std::string& name) const { return fields_.count(name) != 0; }
-  // Error unless present, of the type and with `rank` non-zero dimensions.
-  const Field& field(const std::string& name, int type, size_t rank) const {
-    const auto found = fields_.find(name);
-    if (found == fields_.end()) throw fault(0, "field '" + name + "' is missing", "is this an RGL BRDF?");
-    const Field& f = found->second;
-    if (f.type != type) throw fault(f.offset, strf("field '%s' has type %d, expected %d", name.c_str(), f.type, type));
-    if (f.shape.size() != rank)
-      throw fault(f.offset, strf("field '%s' has %zu dimensions, expected %zu", name.c_str(), f.shape.size(), rank));
-    if (f.count == 0) throw fault(f.offset, "field '" + name + "' is empty");
-    return f;
-  }
-  std::vector<float> floats(const std::string& name, const Field& f) {
-    reader_.seek(f.offset, name.c_str());
-    std::vector<float> v = reader_.get_many<float>(f.count, name.c_str());
-    const auto bad = std::find_if(v.begin(), v.end(), [](float x) { return !std::isfinite(x); });
-    if (bad != v.end())
-      throw fault(f.offset + 4 * static_cast<size_t>(bad - v.begin()),
-                  strf("field '%s' holds a value that is not finite", name.c_str()));
-    return v;
-  }
-  std::string bytes(const std::string& name, const Field& f) {
-    reader_.seek(f.offset, name.c_str());
-    const auto raw = reader_.take(f.count, name.c_str());
-    return std::string(reinterpret_cast<const char*>(raw.data()), raw.size());
-  }
-  Error fault(size_t offset, std::string what, std::string hint = {}) const {
-    return Error(Where{reader_.file(), 0, 0, {}, static_cast<long long>(offset)}, std::move(what), std::move(hint));
-  }
-
- private:
-  void read_field() {
-    const size_t length = reader_.get<uint16_t>("a field name");
-    const auto raw = reader_.take(length, "a field name");
-    const std::string name(reinterpret_cast<const char*>(raw.data()), raw.size());
-    const size_t rank = reader_.get<uint16_t>("a field's rank");
-    Field f{reader_.get<uint8_t>("a field's type"), 0, 1, {}};
-    if (f.type < 1 || f.type > 11) throw reader_.error(strf("field of unknown type %d", f.type), "types 1 to 11");
-    const uint64_t offset = reader_.get<uint64_t>("a field's offset");
-    f.shape = reader_.get_many<size_t>(rank, "a field's shape");
-    for (const size_t s : f.shape)
-      if (__builtin_mul_overflow(f.count, s, &f.count)) throw reader_.error("the shape of a field overflows");
-    if (offset > reader_.size() || f.count > (reader_.size() - offset) / kTypeSize[f.type])
-      throw reader_.error("a field's data lie beyond the end of the file",
-                          strf("it has %zu bytes; is it complete?", reader_.size()));
-    f.offset = offset;
-    if (!fields_.emplace(name, f).second) throw reader_.error("a field is given twice");
-  }
-
-  ByteReader reader_;
-  std::map<std::string, Field> fields_;
-};
+const Field& field_of(const TensorFile& file, const char* name, TensorFile::Type type, size_t rank) {
+  return file.field(name, type, rank, "is this an RGL BRDF?");
+}
 
 void require_ascending(const TensorFile& file, const Field& f, const std::vector<double>& v, const char* name,
                        double low, double high) {
@@ -132,15 +58,15 @@ std::vector<float> non_negative(TensorFile& file, const char* name, const Field&
 
 RglBrdf::Tables read_tables(TensorFile& file) {
   RglBrdf::Tables t;
-  const Field &phi = file.field("phi_i", kFloat32, 1), &theta = file.field("theta_i", kFloat32, 1);
+  const Field &phi = field_of(file, "phi_i", kFloat32, 1), &theta = field_of(file, "theta_i", kFloat32, 1);
   t.phi = widened(file.floats("phi_i", phi));
   t.theta = widened(file.floats("theta_i", theta));
   require_ascending(file, phi, t.phi, "phi_i", -2 * kPi - 1e-3, 2 * kPi + 1e-3);
   require_ascending(file, theta, t.theta, "theta_i", 0, kPi / 2 + 1e-3);
   require_whole_circle(file, phi, t.phi);
 
-  const Field &ndf = file.field("ndf", kFloat32, 2), &sigma = file.field("sigma", kFloat32, 2),
-              &vndf = file.field("vndf", kFloat32, 4);
+  const Field &ndf = field_of(file, "ndf", kFloat32, 2), &sigma = field_of(file, "sigma", kFloat32, 2),
+              &vndf = field_of(file, "vndf", kFloat32, 4);
   require_grid(file, ndf, "ndf");
   require_grid(file, sigma, "sigma");
   require_grid(file, vndf, "vndf");
@@ -154,10 +80,10 @@ RglBrdf::Tables read_tables(TensorFile& file) {
 
   t.spectral = file.has("spectra");
   const char* name = t.spectral ? "spectra" : "rgb";
-  const Field& values = file.field(name, kFloat32, 5);
+  const Field& values = field_of(file, name, kFloat32, 5);
   t.wavelength_um = {0.65, 0.55, 0.45};
   if (t.spectral) {
-    const Field& w = file.field("wavelengths", kFloat32, 1);
+    const Field& w = field_of(file, "wavelengths", kFloat32, 1);
     t.wavelength_um = widened(file.floats("wavelengths", w));
     for (double& x : t.wavelength_um) x /= 1000;
     require_ascending(file, w, t.wavelength_um, "wavelengths", 0.1, 20);
@@ -167,7 +93,7 @@ RglBrdf::Tables read_tables(TensorFile& file) {
                 {t.phi.size(), t.theta.size(), t.wavelength_um.size(), values.shape[3], values.shape[4]});
   t.rows = values.shape[3], t.columns = values.shape[4];
   t.values = file.floats(name, values);
-  const Field& jacobian = file.field("jacobian", kUint8, 1);
+  const Field& jacobian = field_of(file, "jacobian", kUint8, 1);
   t.jacobian = file.bytes("jacobian", jacobian)[0] != 0;
   return t;
 }
@@ -177,7 +103,7 @@ RglBrdf::Tables read_tables(TensorFile& file) {
 std::shared_ptr<const RglBrdf> parse_rgl(std::span<const std::byte> bytes, const std::string& file_name) {
   TensorFile file(bytes, file_name);
   RglBrdf::Tables tables = read_tables(file);
-  const std::string description = file.bytes("description", file.field("description", kUint8, 1));
+  const std::string description = file.bytes("description", field_of(file, "description", kUint8, 1));
   return std::make_shared<const RglBrdf>(std::filesystem::path(file_name).stem().string(), description,
                                          std::move(tables));
 }

@@ -3,6 +3,7 @@
 #include "base/files.h"
 #include "base/params.h"
 #include "formats/sqt/container.h"
+#include "formats/sqt/polarisation.h"
 #include "formats/sqt/sqt.h"
 #include "sqt/aligned.h"
 #include "sqt/paper.h"
@@ -41,7 +42,10 @@ std::vector<double> angles_of(const Params& p) {
   return theta;
 }
 
-std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<const std::byte> raw) {
+using MuellerPtr = std::shared_ptr<const sqt::MuellerTable>;
+
+std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<const std::byte> raw,
+                                              MuellerPtr mueller) {
   sqt::AlignedData d;
   d.function = function_of(header.at("function"));
   const Params l = header.at("layout"), t = header.at("totals");
@@ -85,10 +89,11 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   size_t found = 0;
   for (const sqt::AlignedSheet& sheet : d.sheets) found += sheet.stored;
   if (found != leaves) throw Error("SQT payload is damaged: its leaves are not those announced");
+  d.mueller = std::move(mueller);
   return sqt::make_bundle(std::move(d));
 }
 
-std::shared_ptr<const sqt::Bundle> paper_of(const Params& header, std::span<const std::byte> raw) {
+std::shared_ptr<const sqt::Bundle> paper_of(const Params& header, std::span<const std::byte> raw, MuellerPtr mueller) {
   sqt::PaperData d;
   d.function = function_of(header.at("function"));
   const Params v = header.at("views");
@@ -122,6 +127,7 @@ std::shared_ptr<const sqt::Bundle> paper_of(const Params& header, std::span<cons
     for (auto& leaf : d.slices.back()) leaf.value = reader.get<float>();
   }
   if (!reader.ok() || reader.left()) throw Error("SQT payload is damaged: its length does not fit its slices");
+  d.mueller = std::move(mueller);
   return sqt::make_bundle(std::move(d));
 }
 
@@ -163,15 +169,23 @@ SqtFile parse_sqt(std::span<const std::byte> bytes, const std::string& file_name
     file.header.assign(reinterpret_cast<const char*>(text.data()), text.size());
     const Params header = Params::parse_json(file.header, file_name);
     std::vector<std::byte> expanded;
+    MuellerPtr mueller;
     std::span<const std::byte> raw = payload;
+    if (header.find("polarisation")) {
+      const Params p = header.at("polarisation");
+      const auto behind = static_cast<size_t>(p.integer("bytes", 1, static_cast<long long>(payload.size())));
+      raw = payload.first(payload.size() - behind);
+      mueller = sqt_file::mueller_of(p, payload.last(behind));
+    }
+    const size_t stored = raw.size();
     if (coding == sqt_file::lzma) {
-      expanded = sqt_file::lzma_expand(payload, static_cast<size_t>(raw_size));
+      expanded = sqt_file::lzma_expand(raw, static_cast<size_t>(raw_size));
       raw = expanded;
-    } else if (raw_size != payload_size) {
+    } else if (raw_size != stored) {
       throw Error("implausible sizes in the SQT header");
     }
-    file.bundle =
-        header.at("method").as_choice({"aligned", "paper"}) == 0 ? aligned_of(header, raw) : paper_of(header, raw);
+    file.bundle = header.at("method").as_choice({"aligned", "paper"}) == 0 ? aligned_of(header, raw, std::move(mueller))
+                                                                           : paper_of(header, raw, std::move(mueller));
   } catch (const Error& e) {
     if (!e.where().file.empty()) throw;
     throw Error(Where{file_name, 0, 0, {}, -1}, e.message(), e.hint(), e.code());

@@ -11,7 +11,7 @@
 namespace suite {
 
 // Versions read. A file is written as the oldest that can say what it holds.
-inline constexpr int kSqtOldest = 3, kSqtVersion = 4;
+inline constexpr int kSqtOldest = 3, kSqtRefined = 4, kSqtVersion = 5;
 
 struct SqtFile {
   std::shared_ptr<const sqt::Bundle> bundle;

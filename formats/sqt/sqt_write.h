@@ -7,17 +7,19 @@
 #include "base/json.h"
 #include "sqt_fit/aligned_fit.h"
 #include "sqt_fit/errors.h"
+#include "sqt_fit/mueller_fit.h"
 #include "sqt_fit/paper_fit.h"
 
 namespace suite {
 
 // Where a fit came from; all of it goes into the header.
 struct SqtProvenance {
-  std::string command;       // canonical command line
-  std::string tool;          // "sqt-fit 0.9.0"
-  std::string input;         // file name or model specification
-  std::string input_sha256;  // of the input file, empty for models
-  std::string conventions;   // of the input, one line
+  std::string command;              // canonical command line
+  std::string tool;                 // "sqt-fit 0.9.0"
+  std::string input;                // file name or model specification
+  std::string input_sha256;         // of the input file, empty for models
+  std::string conventions;          // of the input, one line
+  sqt::MuellerErrors mueller = {};  // of its matrices, where the fit has some
 };
 
 // A file image. errors: per channel and overall as Reference::measure returns them, or empty.
@@ -28,5 +30,6 @@ std::vector<std::byte> pack_sqt(const sqt::PaperData& data, const SqtProvenance&
 
 // The error figures under their published keys, to six digits.
 Json error_json(const sqt::ErrorFigures& e);
+Json mueller_error_json(const sqt::MuellerErrors& e);
 
 }  // namespace suite

@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include "formats/sqt/container.h"
+#include "formats/sqt/polarisation.h"
 #include "formats/sqt/sqt.h"
 #include "formats/sqt/sqt_write.h"
 
@@ -55,6 +56,17 @@ Json head(const char* method, const sqt::Function::Info& function, const SqtProv
   return j;
 }
 
+// Matrices, with their errors, behind the payload.
+void add_polarisation(const sqt::MuellerTable& table, const SqtProvenance& p, Json& header,
+                      std::vector<std::byte>& payload) {
+  const std::vector<std::byte> elements = sqt_file::mueller_elements(table);
+  Json j = sqt_file::mueller_axes(table);
+  j.set("bytes", elements.size());
+  j.set("errors", mueller_error_json(p.mueller));
+  header.set("polarisation", std::move(j));
+  payload.insert(payload.end(), elements.begin(), elements.end());
+}
+
 std::vector<std::byte> frame(const Json& header, std::span<const std::byte> payload, size_t raw_size,
                              sqt_file::Coding coding, int version) {
   const std::string text = header.text(0);
@@ -94,6 +106,14 @@ Json error_json(const sqt::ErrorFigures& e) {
   return j;
 }
 
+Json mueller_error_json(const sqt::MuellerErrors& e) {
+  Json j = Json::object();
+  j.set("rms", std::stod(strf("%.6g", e.rms)));
+  j.set("lit", std::stod(strf("%.6g", e.lit)));
+  j.set("largest", std::stod(strf("%.6g", e.largest)));
+  return j;
+}
+
 std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance& provenance,
                                 const std::vector<sqt::ErrorFigures>& errors) {
   const sqt::AlignedLayout& l = fit.data.layout;
@@ -127,8 +147,10 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
   put<uint32_t>(payload, static_cast<uint32_t>(fit.totals_bytes.size()));
   payload.insert(payload.end(), fit.totals_bytes.begin(), fit.totals_bytes.end());
   payload.insert(payload.end(), fit.sheets_bytes.begin(), fit.sheets_bytes.end());
-  return frame(header, payload, payload.size(), sqt_file::plain,
-               l.refined || !l.spectra.empty() ? kSqtVersion : kSqtOldest);
+  const size_t raw_size = payload.size();
+  int version = l.refined || !l.spectra.empty() ? kSqtRefined : kSqtOldest;
+  if (fit.data.mueller) add_polarisation(*fit.data.mueller, provenance, header, payload), version = kSqtVersion;
+  return frame(header, payload, raw_size, sqt_file::plain, version);
 }
 
 std::vector<std::byte> pack_sqt(const sqt::PaperData& data, const SqtProvenance& provenance,
@@ -167,7 +189,9 @@ std::vector<std::byte> pack_sqt(const sqt::PaperData& data, const SqtProvenance&
     for (const uint8_t o : orders) put(raw, o);
     for (const auto& leaf : slice) put(raw, leaf.value);
   }
-  return frame(header, sqt_file::lzma_compress(raw), raw.size(), sqt_file::lzma, kSqtOldest);
+  std::vector<std::byte> payload = sqt_file::lzma_compress(raw);
+  if (data.mueller) add_polarisation(*data.mueller, provenance, header, payload);
+  return frame(header, payload, raw.size(), sqt_file::lzma, data.mueller ? kSqtVersion : kSqtOldest);
 }
 
 }  // namespace suite

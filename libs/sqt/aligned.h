@@ -78,6 +78,7 @@ struct AlignedData {
   AlignedLayout layout;
   std::vector<AlignedSheet> sheets;
   AlignedTotals totals;
+  std::shared_ptr<const MuellerTable> mueller;  // null: nothing is known of polarisation
 };
 
 // Angles of the totals that go with views (rad, ascending, 0 to less than pi/2): six steps between two views; near the

@@ -385,6 +385,7 @@ std::shared_ptr<const Bundle> make_bundle(AlignedData data) {
   info.magnitude_um = data.totals.magnitude_um;
   info.delta = data.totals.delta_kind;
   info.delta_core = data.totals.delta_core;
+  info.mueller = data.mueller;
   for (const double theta : data.layout.theta)
     for (size_t j = 0; j < data.layout.phi_count; ++j)
       info.views.push_back({theta, 2 * kPi * static_cast<double>(j) / static_cast<double>(data.layout.phi_count)});

@@ -15,6 +15,7 @@
 
 #include "sqt/cell.h"
 #include "sqt/function.h"
+#include "sqt/mueller_table.h"
 
 namespace suite::sqt {
 
@@ -33,6 +34,7 @@ class Bundle {
     size_t leaves = 0;                 // over all trees
     Dirac delta = Dirac::none;         // a Dirac lobe beside the cells
     double delta_core = 0;             // half-vector angle within which it stands for a narrow lobe, rad
+    std::shared_ptr<const MuellerTable> mueller;  // matrices over m11; null: nothing is known of polarisation
     bool has_delta() const { return delta != Dirac::none; }
   };
   // One leaf of one slice.

@@ -21,11 +21,12 @@ struct PaperLeaf {
 
 struct PaperData {
   Function::Info function;
-  std::vector<Bundle::View> views;             // isotropic: phi = 0, theta ascending; else theta-major over phi_count
-  size_t phi_count = 1;                        // view azimuths per polar angle, uniform from 0
-  std::vector<std::vector<PaperLeaf>> slices;  // [view][channel] flattened; values are f, 1/sr
-  std::vector<double> magnitude_um;            // ascending
-  std::vector<float> magnitudes;               // [view][magnitude] totals W before reduction
+  std::vector<Bundle::View> views;              // isotropic: phi = 0, theta ascending; else theta-major over phi_count
+  size_t phi_count = 1;                         // view azimuths per polar angle, uniform from 0
+  std::vector<std::vector<PaperLeaf>> slices;   // [view][channel] flattened; values are f, 1/sr
+  std::vector<double> magnitude_um;             // ascending
+  std::vector<float> magnitudes;                // [view][magnitude] totals W before reduction
+  std::shared_ptr<const MuellerTable> mueller;  // null: nothing is known of polarisation
 };
 
 // Checks every invariant (sizes, ranges, disjoint leaves). Error naming the fault when the data are inconsistent.

@@ -276,6 +276,7 @@ std::shared_ptr<const Bundle> make_bundle(PaperData data) {
   info.frame = "incident";
   info.magnitude_um = data.magnitude_um;
   info.views = data.views;
+  info.mueller = data.mueller;
   for (const auto& slice : data.slices) {
     info.leaves += slice.size();
     for (const PaperLeaf& leaf : slice) info.max_order = std::max(info.max_order, leaf.id.order());

@@ -5,6 +5,8 @@
 #include <map>
 
 #include "sqt_fit/aligned_fit.h"
+#include "sqt_fit/mueller_fit.h"
+#include "support/polished_metal.h"
 
 namespace suite::test {
 
@@ -68,10 +70,23 @@ BundlePtr fitted(const sqt::Function& function, size_t views, int base_order, in
   return sqt::make_bundle(sqt::encode_aligned(sqt::AlignedSource(function, options), quality).data);
 }
 
+// What was measured with its matrices.
+BundlePtr measured_metal() {
+  const auto metal = polished_metal();
+  sqt::AlignedSource::Options options;
+  options.views = 9;
+  options.base_order = 5;
+  options.max_order = 7;
+  sqt::AlignedData data = sqt::encode_aligned(sqt::AlignedSource(*metal, options), 0.1).data;
+  data.mueller = sqt::fit_mueller(*metal, 0.01).table;
+  return sqt::make_bundle(std::move(data));
+}
+
 // By the names that the rows give them.
 BundlePtr bundle_named(const std::string& file) {
   static const std::map<std::string, BundlePtr> all{{"glossy.sqt", fitted(Glossy(0), 9, 5, 7, 0.1)},
                                                     {"lacquer.sqt", fitted(Glossy(0.08), 9, 5, 7, 0.1)},
+                                                    {"metal.sqt", measured_metal()},
                                                     {"haze.sqt", fitted(Haze(), 2, 4, 6, 0.05)}};
   return all.at(file);
 }

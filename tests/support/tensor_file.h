@@ -12,8 +12,17 @@ class TensorFileBuilder {
   void floats(const std::string& name, std::vector<uint64_t> shape, const std::vector<float>& values) {
     add(name, 10, std::move(shape), values.data(), values.size() * sizeof(float));
   }
+  void words(const std::string& name, const std::vector<uint16_t>& values) {
+    add(name, 3, {values.size()}, values.data(), values.size() * sizeof(uint16_t));
+  }
   void bytes(const std::string& name, const std::string& text) {
     add(name, 1, {text.size()}, text.data(), text.size());
+  }
+
+  // Other values of a field of floats, of the same shape.
+  void replace_floats(const std::string& name, const std::vector<float>& values) {
+    for (Field& f : fields_)
+      if (f.name == name) f.data.assign(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
   }
 
   std::vector<std::byte> build() const {

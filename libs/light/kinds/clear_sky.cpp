@@ -43,7 +43,8 @@ Parts parts_of(const ClearSkySpec& s, const Row& row, double mass, double ozone_
 }
 
 // Direct transmittance, and the diffuse irradiance on the horizontal per extraterrestrial irradiance (section 3).
-void spectral(const ClearSkySpec& s, double mu, const Row& row, double& direct, double& diffuse) {
+// Returns what share of the diffuse light molecules have scattered.
+double spectral(const ClearSkySpec& s, double mu, const Row& row, double& direct, double& diffuse) {
   const double h = 22.0 / 6370, mass = air_mass(std::acos(mu));
   const auto ozone_mass = [h](double cosine) { return (1 + h) / std::sqrt(cosine * cosine + 2 * h); };  // 2-10
   const Parts p = parts_of(s, row, mass, ozone_mass(mu)), q = parts_of(s, row, 1.8, ozone_mass(mu));
@@ -62,6 +63,7 @@ void spectral(const ClearSkySpec& s, double mu, const Row& row, double& direct, 
       (direct * mu + by_rayleigh + by_aerosol) * sky * s.ground_albedo / (1 - sky * s.ground_albedo);  // 3-7
   const double correction = row.wavelength_um <= 0.45 ? std::pow(row.wavelength_um + 0.55, 1.8) : 1;   // 3-17
   diffuse = (by_rayleigh + by_aerosol + by_ground) * correction;
+  return by_rayleigh / (by_rayleigh + by_aerosol + by_ground);
 }
 
 // Integral of (bilinear table) times cos over the hemisphere, by Gauss' rule of three points in every cell: the same
@@ -110,10 +112,10 @@ double air_mass(double zenith) {
 ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
   check(spec, sun);
   const double mu = sun.z, zenith = polar_angle(sun);
-  std::vector<double> coarse, transmittance, scattered;
+  std::vector<double> coarse, transmittance, scattered, by_molecules;
   for (const Row& row : kRows) {
     coarse.push_back(row.wavelength_um);
-    spectral(spec, mu, row, transmittance.emplace_back(), scattered.emplace_back());
+    by_molecules.push_back(spectral(spec, mu, row, transmittance.emplace_back(), scattered.emplace_back()));
   }
   // Transmittances vary slower than the Sun's spectrum: interpolate them and keep its lines.
   const Curve direct(coarse, transmittance, Outside::error), diffuse(coarse, scattered, Outside::error);
@@ -141,6 +143,9 @@ ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
   const double integral = hemispheric_integral(sky);
   for (double& v : sky.table) v /= integral;
   sky.radiance = result.diffuse;
+  constexpr double kMolecules = 0.94, kEyeUm = 0.55;
+  sky.polarisation = RayleighPattern{
+      sun, spec.polarisation.value_or(kMolecules * Curve(coarse, by_molecules, Outside::error).at(kEyeUm))};
   return result;
 }
 
@@ -194,6 +199,7 @@ LightSpecPtr read_clear(const Params& p, const LightContext&) {
   c.albedo_400 = p.number_in("albedo_400", 0, 1, "", c.albedo_400);
   c.asymmetry = p.number_in("asymmetry", 0, 0.95, "", c.asymmetry);
   c.ground_albedo = p.number_in("ground_albedo", 0, 1, "", c.ground_albedo);
+  if (p.find("polarisation")) c.polarisation = p.number_in("polarisation", 0, 1, "", 0);
   c.where = p.where();
   return make_light(std::move(c));
 }

@@ -21,6 +21,9 @@ struct ClearSkySpec {
   double albedo_400 = 0.945;         // single-scattering albedo of the aerosol at 0.4 um
   double asymmetry = 0.65;           // of the aerosol
   double ground_albedo = 0.2;
+  // Largest degree of polarisation, 0 to 1; nothing: 0.94 (air, depolarisation 0.03) times the share of the diffuse
+  // light at 0.55 um that molecules have scattered.
+  std::optional<double> polarisation = {};
   Where where = {};  // in the text
 };
 // Settles into a sky, and the sun above the air into the one at the ground.

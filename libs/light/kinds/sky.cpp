@@ -31,7 +31,10 @@ SpectralState one_wavelength() {
 Sky::Sky(const SkySpec& directions) : Sky(directions, one_wavelength()) {}
 
 Sky::Sky(const SkySpec& spec, const SpectralState& state)
-    : theta_max_(spec.full_sphere ? kPi : kPi / 2), full_sphere_(spec.full_sphere), cells_(spec.cells) {
+    : theta_max_(spec.full_sphere ? kPi : kPi / 2),
+      full_sphere_(spec.full_sphere),
+      cells_(spec.cells),
+      polarisation_(spec.polarisation) {
   if (!spec.layers.empty())
     bake_layers(spec, state);
   else
@@ -235,6 +238,7 @@ std::optional<LightSample> Sky::sample(const LightReceiver&, const std::array<do
   s.spectrum = spectrum();
   s.scale = s.spectrum ? relative(drawn.direction) : 1;
   if (!(s.scale > 0)) return std::nullopt;
+  s.source = source();
   return s;
 }
 
@@ -245,9 +249,16 @@ std::optional<LightSample> Sky::sample_member(size_t, double, const LightReceive
 
 std::optional<LightMet> Sky::met_outside(Dir d, double) const {
   if (outside(d)) return std::nullopt;
-  if (table_.empty()) return LightMet{1, spectrum(), 0};
+  if (table_.empty()) return LightMet{1, spectrum(), 0, source()};
   const Place place = place_of(d);
-  return LightMet{spectrum() ? relative(place) : 1, spectrum(), density(place)};
+  return LightMet{spectrum() ? relative(place) : 1, spectrum(), density(place), source()};
+}
+
+Stokes Sky::stokes(uint32_t, Dir k, double) const {
+  SUITE_CHECK(polarisation_.has_value());
+  const double c = dot(polarisation_->sun, -k), degree = polarisation_->most * (1 - c * c) / (1 + c * c);
+  const Mueller m = ScatteringPlane(k, polarisation_->sun).matrix({1, -degree, 0, 0, 0, 0});
+  return {1, m(1, 0), m(2, 0), 0};
 }
 
 DirectionSample Sky::draw(Vec2 u) const {

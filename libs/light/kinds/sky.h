@@ -5,6 +5,7 @@
 // Schwarzschild's equation for isothermal absorbing layers over a plane Earth (e.g. Liou 2002, eq. 4.2.9).
 #pragma once
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "light/light_spec.h"
@@ -15,6 +16,13 @@ namespace suite {
 struct ThermalLayer {
   double temperature_k = 0;
   Curve optical_depth;  // vertical, of absorption
+};
+
+// How molecules polarise a sky: across the plane of its direction and the sun, by the degree most sin^2 / (1 + cos^2)
+// of the angle between the two, at all wavelengths. Based on: Lord Rayleigh 1871 (Bohren & Huffman 1983, section 5.2).
+struct RayleighPattern {
+  Dir sun;          // towards it
+  double most = 0;  // at right angles from the sun, 0 to 1
 };
 
 // The sky over the scene. Radiance below the horizon (z < 0) is zero unless `full_sphere`. What is given decides the
@@ -34,6 +42,7 @@ struct SkySpec {
   // Emission of non-scattering layers over a plane Earth, with the zenith angles tabulated in `zeniths` rows (2 or
   // more).
   std::vector<ThermalLayer> layers = {};
+  std::optional<RayleighPattern> polarisation = {};  // nothing: unpolarised
 };
 
 LightSpecPtr make_light(SkySpec spec);
@@ -54,6 +63,8 @@ class Sky final : public Light {
   size_t members() const override { return 0; }
   std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
                                            const std::array<double, 4>& u, double time) const override;
+
+  Stokes stokes(uint32_t source, Dir k, double time) const override;
 
   bool tabulated() const { return !cdf_.empty(); }
   // When the shape is one for all wavelengths: relative radiance in a direction times a spectrum. spectrum() is null
@@ -104,6 +115,8 @@ class Sky final : public Light {
   size_t rows_ = 0, columns_ = 0, channels_ = 1;  // cells: rows x columns
   double theta_max_ = kPi / 2;
   bool full_sphere_ = false, cells_ = false;
+  std::optional<RayleighPattern> polarisation_;
+  uint32_t source() const { return polarisation_ ? 0 : kUnpolarised; }
 };
 
 }  // namespace suite

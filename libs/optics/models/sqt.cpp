@@ -60,6 +60,8 @@ class Sqt final : public ScatterModel {
       most_.push_back(beyond && range.outside == Outside::zero ? 0 : 1);
     }
     for (const size_t k : state.knots) knot_.push_back(shape_[k]);
+    if (info.mueller)
+      for (const Bin& bin : state.bins) matrix_.push_back(locate(info.mueller->data().wavelength_um, bin.center_um()));
     channels_ = used(shape_, state.size()), knot_channels_ = used(knot_, knot_.size());
     for (const double wavelength : info.function.wavelength_um)
       total_of_.push_back(
@@ -127,6 +129,24 @@ class Sqt final : public ScatterModel {
   void delta_probability(Dir out, int, int, std::span<float> probability) const override {
     for (size_t k = 0; k < probability.size(); ++k) probability[k] = static_cast<float>(share(out, knot_[k]));
   }
+  Polarised mueller(Dir out, Dir in, std::span<Mueller> m) const override {
+    const sqt::MuellerTable* const table = bundle_->info().mueller.get();
+    if (!table || !(out.z > 0 && in.z > 0)) return ScatterModel::mueller(out, in, m);
+    thread_local std::vector<Mueller> at;
+    at.resize(table->data().wavelength_um.size());
+    table->at(out, in, at);
+    const ScatteringPlane plane(out, in);
+    for (Mueller& x : at) x = plane.turned(x);
+    const bool grey = at.size() == 1;
+    for (size_t i = 0; i < (grey ? 1 : m.size()); ++i) {
+      const Between b = matrix_[i];
+      m[i] = b.t > 0 ? at[b.low] * (1 - b.t) + at[b.high] * b.t : at[b.low];
+    }
+    return {grey, 0};
+  }
+  Polarised delta_mueller(Dir out, int, int, std::span<Mueller> m) const override {
+    return mueller(out, dirac(out, knot_.front().low).in, m);
+  }
   bool spectrally_uniform_shape() const override { return bundle_->channels() == 1; }
   bool isotropic() const override { return bundle_->info().function.isotropic; }
   bool opaque() const override { return bundle_->info().function.domain == sqt::Domain::hemisphere; }
@@ -165,6 +185,7 @@ class Sqt final : public ScatterModel {
 
   std::shared_ptr<const sqt::Bundle> bundle_;
   Betweens shape_, magnitude_;  // per bin
+  Betweens matrix_;             // per bin: between wavelengths of the matrices, where there are some
   std::vector<double> most_;    // per bin: the largest total, 0 where nothing is stored and `zero` declared
   std::vector<Between> knot_;   // per knot
   std::vector<size_t> channels_, knot_channels_;  // that bins, that knots need
@@ -174,7 +195,8 @@ class Sqt final : public ScatterModel {
 // The tests fit a bundle to each.
 std::vector<ModelSpec> examples() {
   return {{"sqt", {}, {}, {{"file", "glossy.sqt"}, {"outside", "hold"}}, nullptr},
-          {"sqt", {}, {}, {{"file", "lacquer.sqt"}, {"outside", "hold"}}, nullptr}};
+          {"sqt", {}, {}, {{"file", "lacquer.sqt"}, {"outside", "hold"}}, nullptr},
+          {"sqt", {}, {}, {{"file", "metal.sqt"}, {"outside", "hold"}}, nullptr}};
 }
 
 }  // namespace

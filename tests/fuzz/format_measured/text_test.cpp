@@ -1,5 +1,6 @@
 #include "formats/brdf_csv/brdf_csv.h"
 #include "formats/cornell/cornell.h"
+#include "formats/mueller_csv/mueller_csv.h"
 #include "formats/samples/samples.h"
 #include "support/fuzz.h"
 
@@ -27,6 +28,23 @@ TEST(FuzzCornell, Text) {
   test::fuzz(
       test::bytes_of("# note\n3\n400 500\n600\n0.5 0 0.3 0.7 1 2 3\n0.5 0 0.3 1.5 4 5 6\n"),
       [](std::span<const std::byte> b) { check(parse_cornell(text_of(b), "f.brdf")); }, 4, test::kMutations);
+}
+TEST(FuzzMuellerCsv, Text) {
+  std::string text = "# convention: mitsuba\ntheta_h_deg,theta_d_deg,phi_d_deg,wavelength_um";
+  for (int i = 1; i <= 4; ++i)
+    for (int j = 1; j <= 4; ++j) text += strf(",m%d%d", i, j);
+  for (const char* at : {"0,0,0", "0,50,0", "40,0,0", "40,50,0", "0,0,180", "0,50,180", "40,0,180", "40,50,180"})
+    text += std::string("\n") + at + ",0.5,0.3,0.1,0,0,0.1,0.2,0,0,0,0,0.2,0,0,0,0,nan";
+  test::fuzz(
+      test::bytes_of(text),
+      [](std::span<const std::byte> b) {
+        const auto brdf = parse_mueller_csv(text_of(b), "f.csv");
+        std::vector<double> f(brdf->info().wavelength_um.size());
+        brdf->value(dir_from_angles(0.4, 0.1), dir_from_angles(1.1, -2), f);
+        for (const double x : f)
+          if (!(x >= 0)) throw std::runtime_error("a value that is negative or not a number came out");
+      },
+      6, test::kMutations);
 }
 TEST(FuzzCsv, Text) {
   test::fuzz(

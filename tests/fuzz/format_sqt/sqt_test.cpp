@@ -2,6 +2,7 @@
 #include "formats/sqt/container.h"
 #include "formats/sqt/sqt_write.h"
 #include "support/fuzz.h"
+#include "support/polished_metal.h"
 #include "support/sqt_examples.h"
 
 namespace suite::format_sqt_sqt_test {
@@ -9,6 +10,10 @@ namespace {
 
 void parse_and_ask(std::span<const std::byte> bytes) {
   const SqtFile file = parse_sqt(bytes, "x.sqt");
+  if (const sqt::MuellerTable* const table = file.bundle->info().mueller.get()) {
+    std::vector<Mueller> m(table->data().wavelength_um.size());
+    table->at(dir_from_angles(0.4, 0.1), dir_from_angles(1.1, -2), m);
+  }
   for (const double theta : {0.0, 0.4, 1.2, 1.57}) {
     const Dir out = dir_from_angles(theta, 0.1);
     const auto in = file.bundle->sample(out, {0.3, 0.6}, 0.4, 0);
@@ -47,6 +52,11 @@ TEST(FuzzSqt, EveryTruncationIsRefused) {
         ASSERT_EQ(e.where().file, "x.sqt") << n;
       }
   }
+}
+TEST(FuzzSqt, MatricesBehindTheChecksum) {
+  sqt::AlignedFit fit = test::small_fit(test::glossy(), 0.5);
+  fit.data.mueller = sqt::fit_mueller(*test::polished_metal(), 0.1).table;
+  test::fuzz(pack_sqt(fit, {}, {}), resealed, 4, test::kMutations, kWords);
 }
 TEST(FuzzSqt, PaperBehindTheChecksum) {
   test::fuzz(pack_sqt(test::small_paper(test::glossy()), {}, {}), resealed, 3, test::kMutations, kWords);

@@ -7,6 +7,7 @@
 #include "formats/sqt/sqt_write.h"
 #include "math/sampling.h"
 #include "math/warps.h"
+#include "support/polished_metal.h"
 #include "support/sqt_examples.h"
 
 namespace suite::format_sqt_file_test {
@@ -38,6 +39,28 @@ TEST(SqtFile, AlignedComesBackAsItWent) {
 TEST(SqtFile, PaperComesBackAsItWent) {
   const sqt::PaperData data = test::small_paper(test::glossy());
   expect_same(*sqt::make_bundle(data), *parse_sqt(pack_sqt(data, {}, {}), "x.sqt").bundle);
+}
+
+// With matrices behind either payload.
+TEST(SqtFile, MatricesComeBackAsTheyWent) {
+  const sqt::MuellerFit mueller = sqt::fit_mueller(*test::polished_metal(), 0.02);
+  sqt::AlignedFit fit = test::small_fit(test::glossy());
+  sqt::PaperData data = test::small_paper(test::glossy());
+  fit.data.mueller = data.mueller = mueller.table;
+  SqtProvenance provenance;
+  provenance.mueller = mueller.errors;
+  for (const auto& bytes : {pack_sqt(fit, provenance, {}), pack_sqt(data, provenance, {})}) {
+    const SqtFile file = parse_sqt(bytes, "x.sqt");
+    EXPECT_EQ(file.version, 5);
+    ASSERT_TRUE(file.bundle->info().mueller);
+    EXPECT_EQ(file.bundle->info().mueller->data().elements, mueller.table->data().elements);
+    EXPECT_EQ(file.bundle->info().mueller->data().grid.theta_h, mueller.table->data().grid.theta_h);
+    EXPECT_NE(file.header.find("\"lit\""), std::string::npos);
+    for (size_t n = 0; n < bytes.size(); n += 7) EXPECT_THROW(parse_sqt(std::span(bytes).first(n), "x.sqt"), Error);
+  }
+  expect_same(*sqt::make_bundle(fit.data), *parse_sqt(pack_sqt(fit, provenance, {}), "x.sqt").bundle);
+  EXPECT_EQ(parse_sqt(pack_sqt(test::small_fit(test::glossy()), {}, {}), "x.sqt").version, 3)
+      << "a file is of the oldest version that says what it holds";
 }
 
 TEST(SqtFile, BytesDoNotDependOnTheThreadCount) {
