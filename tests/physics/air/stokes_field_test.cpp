@@ -14,6 +14,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "formats/reptran/netcdf3.h"
@@ -370,11 +371,15 @@ TEST(StokesField, AgreesWithPstarAboutSpheroids) {
   };
   EXPECT_LT(error(36, Light::polarised, matrix).linear, 0.003);
   EXPECT_LT(error(16, Light::polarised, matrix).linear, 0.01);
-  const PstarErrors all = error(24, Light::circular, matrix);
-  std::printf("24 streams with V: I, Q and U within %.4f of I, V within %.4f of its largest\n", all.linear,
-              all.circular);
-  EXPECT_LT(all.linear, 0.008);
-  EXPECT_LT(all.circular, 0.09);
+  // V is scattered twice at least, so that truncation acts on all of it: it wants more streams.
+  for (const auto& [streams, linear, circular] :
+       {std::tuple{8, 0.05, 0.6}, {16, 0.01, 0.2}, {24, 0.007, 0.08}, {28, 0.003, 0.022}}) {
+    const PstarErrors all = error(streams, Light::circular, matrix);
+    std::printf("%d streams with V: I, Q and U within %.4f of I, V within %.4f of its largest\n", streams, all.linear,
+                all.circular);
+    EXPECT_LT(all.linear, linear) << streams;
+    EXPECT_LT(all.circular, circular) << streams;
+  }
   // Control: without V, and with retardance of the other sign.
   EXPECT_GT(error(24, Light::polarised, matrix).circular, 0.9);
   GreekMatrix flipped = matrix;

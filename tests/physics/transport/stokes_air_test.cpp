@@ -118,7 +118,8 @@ TEST(StokesAir, SpheresPolariseAsInTracedAir) {
   const Sky sky = spheres();
   const auto traced = see(sky, AirScattering::traced, many(1024)), field = see(sky, AirScattering::diffuse, many(256));
   EXPECT_LT(largest_z("spheres", field, traced, 0.005), kSigmas);
-  for (const StokesSeen& s : field) EXPECT_EQ(s.depolarised, 0);
+  // All but the glass, where what several facets do counts as depolarised.
+  for (size_t i = 0; i + 1 < field.size(); ++i) EXPECT_EQ(field[i].depolarised, 0) << i;
   // Control: the same particles, had they no matrices.
   Sky unknown = sky;
   unknown.air.aerosol->boundary.spheres = nullptr;
