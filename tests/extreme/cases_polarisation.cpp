@@ -54,6 +54,9 @@ double off_no_step(double step) {
   return static_cast<double>(std::fabs((m.a - m.b) / std::norm(reflected(c, index).s) - 1));
 }
 
+// What an interface of index 1 reflects.
+double off_no_interface(double c) { return fresnel_reflection(c, 1).a; }
+
 // All elements of a metal's matrix at 70 degrees; they are at most 1.
 double off_metal(double k) {
   const double c = std::cos(70 * kDegree);
@@ -118,6 +121,46 @@ double off_emission(double k) {
   return static_cast<double>(std::fabs(-m.b / (1 - m.a) / exact - 1));
 }
 
+// The same of water and of metals in bands of the visible and the infrared (tests/data/polarisation). Aluminium at 10
+// um: 0.984.
+double off_emission_of_bands(double) {
+  const std::complex<double> water(1.218, 0.0508), gold(0.18377, 3.4313), aluminium(1.391, 7.65), infrared(25.3, 90);
+  const double c = std::cos(85 * kDegree);
+  double worst = 0;
+  for (const auto& index : {water, gold, aluminium, infrared}) {
+    const PlaneBlocks m = fresnel_reflection(c, index);
+    const Amplitudes e = reflected(c, index);
+    const Long s = std::norm(e.s), p = std::norm(e.p), exact = (s - p) / (2 - s - p);
+    worst = std::max(worst, static_cast<double>(std::fabs(-m.b / (1 - m.a) / exact - 1)));
+    if (index == infrared && std::fabs(exact - 0.984) > 5e-4) return NAN;
+  }
+  return worst;
+}
+
+// Facets whose index straddles Brewster's angle over the bands: U changes its sign there, and each band has its own.
+double off_bands_about_brewster(double) {
+  const SpectralState state = test::test_state(1);
+  const Curve index({0.4, 2}, {1.2, 2.6}, Outside::hold);
+  const ModelSpec spec{"priest_germer",
+                       {{"sigma", 0.2}},
+                       {{"index", index}, {"absorption", Curve::constant(0)}, {"diffuse", Curve::constant(0)}},
+                       {},
+                       nullptr};
+  const auto model = bake(spec, state);
+  std::vector<Mueller> m(state.size());
+  const double angle = 58 * kDegree;
+  if (model->mueller(dir_from_angles(angle, 0), dir_from_angles(angle, kPi), m).grey) return NAN;
+  double worst = 0, least = 1, most = -1;
+  const std::vector<float> n = state.sample(index);
+  for (size_t b = 0; b < m.size(); ++b) {
+    const Amplitudes e = reflected(std::cos(angle), double{n[b]});
+    const Long I = (std::norm(e.p) + std::norm(e.s)) / 2, U = (e.p * std::conj(e.s)).real() / I;
+    worst = std::max(worst, static_cast<double>(std::fabs(m[b](2, 2) / m[b](0, 0) - U)));
+    least = std::min(least, m[b](2, 2)), most = std::max(most, m[b](2, 2));
+  }
+  return least < 0 && most > 0 ? worst : NAN;
+}
+
 // The matrix of a facet that sends light nearly back where it came from: beyond four times the angle off its limit,
 // which is a mirror's at normal incidence.
 double off_retro(double angle) {
@@ -129,6 +172,9 @@ double off_retro(double angle) {
     for (int j = 0; j < 4; ++j) worst = std::max(worst, std::fabs(m(i, j) - (i != j ? 0 : i < 2 ? 1 : -1)));
   return std::isfinite(worst) ? std::max(0.0, worst - 4 * angle) : worst;
 }
+
+// Exactly up, exactly down, exactly back.
+double off_upright(double) { return std::max({off_frame(0), off_frame(kPi), off_retro(0)}); }
 
 // What a matte surface sends on of light of a degree of polarisation: its own degree.
 double off_matte(double degree) {
@@ -160,6 +206,30 @@ double off_in_the_plane_of_the_sun(double away) {
   return std::fabs(one[0].dolp() - other[0].dolp());
 }
 
+// Straight up below a cloud of molecules, where many scatterings leave no direction but the vertical: Q and U are 0,
+// and the rays tell how they scatter beside the errors that are reported. The larger of Q and U over its error.
+constexpr size_t kCloudRays = 16;
+std::vector<test::StokesSeen> below_cloud(double depth) {
+  return below_molecules(depth, {{0.1, 0.2, -1}, Dir(0, 0, 1), 0}, 128, kCloudRays, StokesFrame::meridian);
+}
+double off_below_cloud(double depth) {
+  double worst = 0;
+  const auto seen = below_cloud(depth);
+  for (const size_t k : {1, 2}) {
+    double sum = 0, variance = 0;
+    for (const auto& one : seen) sum += one.S[k], variance += one.error[k] * one.error[k];
+    worst = std::max(worst, std::fabs(sum) / std::sqrt(variance));
+  }
+  return worst;
+}
+// Spread of Q and U over the rays beside the reported errors: off 1 as a share.
+double off_errors_below_cloud(double depth) {
+  double spread = 0, told = 0;
+  for (const auto& one : below_cloud(depth))
+    for (const size_t k : {1, 2}) spread += one.S[k] * one.S[k], told += one.error[k] * one.error[k];
+  return std::fabs(std::sqrt(spread / told) - 1);
+}
+
 Case row(std::string name, std::string reference, double bound, double (*error)(double), Sweep sweep) {
   return {"polarisation",
           std::move(name),
@@ -182,6 +252,8 @@ std::vector<Case> polarisation_cases() {
           {"cosine of incidence", "1", 0.1, 1e-12, 10}),
       row("reflectance of an interface that hardly refracts", exact, 1e-4, off_no_step,
           {"index - 1", "1", 0.1, 1e-10, 10}),
+      row("reflectance of an interface of index 1", "0", 1e-12, off_no_interface,
+          {"cosine of incidence", "1", 0.1, 1e-12, 10}),
       row("matrix of a metal at 70 deg", exact, 1e-13, off_metal, {"absorption index k", "1", 1, 1e6, 10}),
       row("V after many total reflections", exact, 1e-10, off_rhombs, {"reflections", "1", 1, 65536, 4}),
       row("crossed polarizers", "their leak", 1e-6, off_crossed, {"leak", "1", 0.1, 1e-9, 10}),
@@ -190,9 +262,16 @@ std::vector<Case> polarisation_cases() {
       row("frames turned there and back", "the identity", 1e-12, off_turned_back,
           {"angle between them", "rad", 0.1, 1e-12, 10}),
       row("Q/I that a metal emits at 85 deg", exact, 1e-9, off_emission, {"absorption index k", "1", 90, 1e6, 10}),
+      row("Q/I that water and metals emit at 85 deg, band by band", exact, 1e-9, off_emission_of_bands, {}),
+      row("U by facets in bands about Brewster's angle", exact, 1e-6, off_bands_about_brewster, {}),
+      row("frames exactly up, down and straight back", "their definition, a mirror's matrix", 1e-12, off_upright, {}),
       row("a facet that sends light back", "a mirror's matrix, 4 times the angle off", 1e-12, off_retro,
           {"angle from straight back", "rad", 0.1, 1e-16, 10}),
       row("polarised light on a matte surface", "0", 0, off_matte, {"degree of polarisation", "1", 1e-3, 1, 10}),
+      row("Q and U straight up below a cloud of molecules, over their errors", "0, by symmetry", 4.5, off_below_cloud,
+          {"optical depth", "1", 10, 100, 10}),
+      row("errors of Q and U below a cloud of molecules", "the spread of 16 rays", 0.5, off_errors_below_cloud,
+          {"optical depth", "1", 10, 100, 10}),
       row("degree in the plane of a sun near the view", "that in the meridian frame", 1e-6, off_in_the_plane_of_the_sun,
           {"angle from the sun", "rad", 0.1, 1e-16, 10}),
   };

@@ -42,14 +42,15 @@ def models_in(value):
 
 
 def polarises(world):
-    """Whether anything in the text does, natural water included."""
+    """Whether anything in the text does, natural water and ground with a polarised part included."""
     scene = prune(world.scene)
-    return any(m in POLARISE for m in models_in(scene)) or any("water" in m for m in scene["media"].values())
+    return any("bpdf" in m for m in scene["materials"].values()) or any(m in POLARISE for m in models_in(scene)) or any("water" in m for m in scene["media"].values())
 
 
 def matte(world):
     """Materials that polarise become matte and opaque, molecules scatter evenly."""
     for m in world.scene["materials"].values():
+        m.pop("bpdf", None)
         if m.get("model") in POLARISE:
             kept = {k: v for k, v in m.items() if "temperature" in k or k == "thermal"}
             m.clear()

@@ -13,6 +13,7 @@ import report
 from known import KNOWN, OPEN, REPORTED
 from programs import Programs
 from relations import RELATIONS
+from rows import TABLE
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 
@@ -25,6 +26,7 @@ def options(words):
     p.add_argument("--seeds", default="0:200", metavar="A:B", help="worlds A to B - 1 (default 0:200)")
     p.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
     p.add_argument("--relation", choices=sorted(RELATIONS), help="this one for all worlds; by weights unless given")
+    p.add_argument("--rows", nargs="+", choices=sorted(TABLE), metavar="ROW", help="only worlds that are drawn from one of these")
     p.add_argument("--binaries", default=os.path.join(ROOT, "build/release/bin"), metavar="DIR", help="scene-prep, dirsig-render, sqt-fit")
     p.add_argument("--log", metavar="FILE", help="a line of JSON a world; worlds that are in it are not run again")
     p.add_argument("--keep", metavar="DIR", help="failures, minimised: scene.yaml, sim.yaml and what is wrong")
@@ -54,7 +56,7 @@ def one(job):
 
 def run_all(o, seeds, log):
     done = report.read(log)
-    seeds = [s for s in seeds if str(s) not in done]
+    seeds = [s for s in seeds if str(s) not in done and (not o.rows or evaluate.has_row(s, evaluate.named(s, o.relation), o.rows))]
     results, warnings = list(done.values()), {}
     jobs = ((s, o.relation, o.binaries, o.keep, not o.no_minimise, o.factor) for s in seeds)
     with concurrent.futures.ProcessPoolExecutor(o.jobs) as pool:

@@ -46,6 +46,11 @@ def draw(seed, relation, table=TABLE):
     return world, case_of(world, relation, seed)
 
 
+def has_row(seed, relation, rows):
+    """Whether the world of a seed was drawn from one of these rows."""
+    return bool(draw(seed, relation)[0].rows & set(rows))
+
+
 def groundless(world):
     """Whether rays may run on below the ground that real air stands on: nothing ends them there."""
     return "profile" in world.sim.get("atmosphere", {}) and "floor_none" in world.rows

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Are faults that are put into the libraries on purpose found by random worlds? README.md has the table of results.
 
-    mutations.py --apply TREE            puts all of them into a copy of the sources, behind the environment variable WORLDS_MUTATION; build that
+    mutations.py --apply TREE [--only NAME ...]       puts them into a copy of the sources, behind the environment variable WORLDS_MUTATION; build that
     mutations.py --binaries DIR [--only NAME ...] [--worlds 200]     draws worlds of the relation until one shows the fault that the same world
                                                                      does not show without the variable
 """
@@ -32,8 +32,12 @@ class Mutation:
     relation: str
     needs: tuple = ()   # rows of which a world has to have one to be asked, and what its case's note says; others count as drawn
     note: str = ""
+    factor: int = 6     # times the relation's paths; Q, U and V are small beside the noise of I
 
 
+FACETS = ("mirror", "ggx", "priest_germer", "beard_maxwell", "shell", "sea", "coated", "coated_through", "bpdf")
+GLASS = ("glass_index", "glass_medium", "pane", "pool")
+POLARISED = 60  # times the paths
 MUTATIONS = (
     Mutation("emission_without_n2", "libs/optics/medium.cpp", "static_cast<float>(mean * index_squared[i])", "static_cast<float>(mean * (MUTANT ? 1.0f : index_squared[i]))",
              "furnace", ("glass_medium", "rough_medium", "pool", "water")),
@@ -63,19 +67,47 @@ MUTATIONS = (
              "substitution", ("double_hg", "hg"), "other words"),
     Mutation("leaves_scene_with_bodies", "libs/transport/media/media_sight.cpp", "  if (!hit.hit()) body_rules_.leave_scene(bodies_at_[r]);", "  if (!hit.hit() && !MUTANT) body_rules_.leave_scene(bodies_at_[r]);",
              "body_of_nothing", ("layer", "two_layers", "haze_body")),
+    Mutation("polarised_emission_sign", "libs/transport/surfaces_any.cpp", "m[b](j, 0) = -one(j, 0) *", "m[b](j, 0) = (MUTANT ? 1 : -1) * one(j, 0) *", "stokes_furnace", FACETS, factor=POLARISED),
+    Mutation("polarised_emission_not_turned", "libs/transport/surfaces_any.cpp", "const Mueller one = to_world(scattered[of.grey ? 0 : b], at.frame, out, in);",
+             "const Mueller one = MUTANT ? scattered[of.grey ? 0 : b] : to_world(scattered[of.grey ? 0 : b], at.frame, out, in);", "stokes_furnace", FACETS, factor=200),
+    Mutation("surface_frame_not_turned", "libs/transport/surfaces_any.cpp", "  for (Mueller& one : of.grey ? m.first(1) : m)\n    if (one != Mueller::depolariser())",
+             "  for (Mueller& one : of.grey ? m.first(1) : m)\n    if (one != Mueller::depolariser() && !MUTANT)", "stokes_furnace", FACETS + GLASS, factor=200),
+    Mutation("reflection_m12_sign", "libs/optics/models/ggx_dielectric.cpp", "        once = fresnel_reflection(std::min(1.0, dot(o, h)), eta) * shape;",
+             "        once = fresnel_reflection(std::min(1.0, dot(o, h)), eta) * shape, once.b *= MUTANT ? -1 : 1;", "stokes_furnace", ("rough_index", "rough_medium", "pool"), factor=POLARISED),
+    Mutation("passage_m12_sign", "libs/optics/models/dielectric.cpp", "        blocks = fresnel_transmission(c, eta);", "        blocks = fresnel_transmission(c, eta), blocks.b *= MUTANT ? -1 : 1;",
+             "stokes_furnace", GLASS, factor=POLARISED),
+    Mutation("phase_matrix_not_turned", "libs/transport/media/space_field.cpp", "plane.matrix(sum[i] * (1 / double{whole[i]}))",
+             "(MUTANT ? (sum[i] * (1 / double{whole[i]})).matrix() : plane.matrix(sum[i] * (1 / double{whole[i]})))", "stokes_furnace", ("rayleigh",), factor=POLARISED),
+    Mutation("phase_matrices_last_alone", "libs/transport/media/space_field.cpp", "      whole[i] += mine, all += mine, unknown", "      whole[i] = (MUTANT ? 0 : whole[i]) + mine, all += mine, unknown",
+             "stokes_scalar", ("overlapping", "volume", "ambient", "layer", "two_layers")),
+    Mutation("mixture_matrices_last_alone", "libs/optics/mixed_model.cpp", "      all[i] += mine, sum += mine, unknown", "      all[i] = (MUTANT ? 0 : all[i]) + mine, sum += mine, unknown",
+             "stokes_scalar", ("mixture",)),
+    Mutation("picture_frame_forgets_roll", "libs/transport/block_run.cpp", "  if (how->frame == StokesFrame::image) first", "  if (how->frame == StokesFrame::image && !MUTANT) first", "stokes_roll",
+             FACETS + GLASS, "picture", POLARISED),
+    Mutation("roll_turns_meridian_frame", "libs/transport/block_run.cpp", "  if (how->frame == StokesFrame::scattering_plane) first = *sun_;",
+             "  if (how->frame == StokesFrame::scattering_plane) first = *sun_;\n  if (MUTANT && how->frame == StokesFrame::meridian) first = upright(*how, ray.ray.direction);", "stokes_roll",
+             FACETS + GLASS, "vertical", POLARISED),
+    Mutation("coated_m21_sign", "libs/optics/models/coated.cpp", "    m(1, 0) = o.a > 0 ? o.b / o.a : 0;", "    m(1, 0) = (MUTANT ? -1 : 1) * (o.a > 0 ? o.b / o.a : 0);", "stokes_furnace",
+             ("coated", "coated_through"), factor=POLARISED),
+    Mutation("rayleigh_p12_sign", "libs/optics/phases/rayleigh.cpp", "PlaneBlocks{all, -0.75 * delta_", "PlaneBlocks{all, (MUTANT ? 0.75 : -0.75) * delta_", "stokes_furnace", ("rayleigh",), factor=POLARISED),
 )
-SWITCH = '''#include <cstdlib>
+SWITCH = '''#ifndef WORLDS_MUTANT
+#define WORLDS_MUTANT
+#include <cstdlib>
 #include <cstring>
 static bool worlds_mutant(const char* name) {
   static const char* const chosen = std::getenv("%s");
   return chosen && std::strcmp(chosen, name) == 0;
 }
+#endif
 ''' % VARIABLE
 
 
-def apply(tree):
+def apply(tree, names):
     texts = {}
     for m in MUTATIONS:
+        if m.name not in names:
+            continue
         path = os.path.join(tree, m.file)
         if path not in texts:
             with open(path) as file:
@@ -88,13 +120,13 @@ def apply(tree):
             file.write(text)
 
 
-def shown(programs, case, folder, seed, name):
+def shown(programs, case, folder, seed, name, factor=6):
     """-> what is wrong with the fault, or ''; screening by FINAL, since the world without the fault is the control."""
     os.environ[VARIABLE] = name
     try:
         if case.exact:
             return case.exact(programs, os.path.join(folder, "term0"), seed)
-        found = judge.screen(case, evaluate.pictures_of(programs, case, folder, [seed], 6)[0])
+        found = judge.screen(case, evaluate.pictures_of(programs, case, folder, [seed], factor)[0])
         return f"{100 * found.size:+.3g} % at {found.where} (p {found.p:.0e})" if found.p < judge.FINAL else ""
     except Refused as refused:
         return f"code {refused.code}: {refused.text[:80]}"
@@ -109,8 +141,8 @@ def hunt(programs, mutation, worlds, folder):
         if not case or mutation.needs and not world.rows & set(mutation.needs) or mutation.note not in case.note or world.rows & COSTLY:
             continue
         programs.forget()
-        wrong = shown(programs, case, folder, seed + 1, mutation.name)
-        if wrong and not shown(programs, case, folder, seed + 1, "none"):
+        wrong = shown(programs, case, folder, seed + 1, mutation.name, mutation.factor)
+        if wrong and not shown(programs, case, folder, seed + 1, "none", mutation.factor):
             return f"| {mutation.name} | {mutation.relation} | {seed + 1} | {case.note}: {wrong} |"
     return f"| {mutation.name} | {mutation.relation} | none of {worlds} | |"
 
@@ -123,7 +155,7 @@ def main():
     p.add_argument("--worlds", type=int, default=200)
     o = p.parse_args()
     if o.apply:
-        apply(o.apply)
+        apply(o.apply, o.only)
         return 0
     with tempfile.TemporaryDirectory() as scratch:
         programs = Programs(o.binaries, scratch)

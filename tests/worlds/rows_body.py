@@ -274,7 +274,7 @@ def pool(d):
 def room(kind):
     def make(d):
         spec = {"sphere": {"radius": 25}} if kind == "sphere" else {"box": {"x0": -14, "y0": -14, "z0": -3, "x1": 14, "y1": 14, "z1": 14}}
-        row = d.pick("model", lambda r: r.name not in ("lambert_through", "leaf", "mirror"))
+        row = d.pick("model", lambda r: r.name not in ("lambert_through", "leaf", "coated_through", "mirror"))
         material = row.make(d)
         if d.maybe("room_glows", 0.6):
             material = glow(d, d.u(0, 0.6))

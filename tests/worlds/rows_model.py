@@ -70,6 +70,24 @@ def leaf(d):
             "transmittance_back": t}
 
 
+def coated(d):
+    """Paint under varnish: the body is a share of what has entered, the skin may be as rough as cuticles are."""
+    return {"model": "coated", "index": d.curve(d.u(1.2, 1.8), 1.01, 5), "sigma": d.u(0.1, 0.5), "reflectance": d.curve(d.u(0, 0.9))}
+
+
+def coated_through(d):
+    """A leaf under its cuticle."""
+    r = d.u(0.05, 0.5)
+    return {"model": "coated", "index": d.u(1.3, 1.6), "sigma": d.u(0.2, 0.4), "reflectance": r, "transmittance": d.u(0.05, 0.9 - r)}
+
+
+def bpdf(d):
+    """Natural ground of which some is mirrored; with the published coefficients and about them."""
+    how = d.one(f"breon cover {d.u(0, 1)}", f"maignan c {d.u(4.7, 7.6)} ndvi {d.u(0, 0.8)}", f"nadal_breon rho {d.u(0.005, 0.03)} beta {d.u(40, 200)}",
+                f"litvinov alpha {d.u(0.3, 1.5)} variance {d.u(0.1, 0.4)} shadow {d.u(0, 1)}")
+    return {**d.one(rpv, ross_li, roujean)(d), "bpdf": how}
+
+
 def sea(d):
     spec = {"model": "sea", "wind_m_s": d.wind, "below": d.u(0, 0.05)}
     return dict(spec, directed=1) if d.chance(0.06) else spec  # its tables take five seconds
@@ -195,7 +213,8 @@ ROWS = [
     ("ward", "model", ward), ("ggx", "model", ggx),
     ("oren_nayar", "model", oren_nayar), ("rpv", "model", rpv), ("ross_li", "model", ross_li),
     ("roujean", "model", roujean), ("priest_germer", "model", priest_germer), ("beard_maxwell", "model", maxwell("beard_maxwell")),
-    ("shell", "model", maxwell("shell")), ("leaf", "model", leaf), ("sea", "model", sea),
+    ("shell", "model", maxwell("shell")), ("leaf", "model", leaf),
+    ("coated", "model", coated), ("coated_through", "model", coated_through), ("bpdf", "model", bpdf), ("sea", "model", sea),
     ("sqt", "model", sqt, {"without": ("reciprocal",)}),  # a fit is reciprocal but for its own error
     ("temperature_constant", "temperature", constant, {"weight": 2}), ("temperature_table", "temperature", table),
     ("temperature_slab", "temperature", slab),
