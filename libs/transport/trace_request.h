@@ -1,5 +1,5 @@
-// What a path kernel asks of the tracer: rays out, hits in. The kernel never calls the tracer itself, so that queues,
-// packets and the order of rays are the business of whoever serves the requests (serve.h).
+// What a path kernel and its techniques ask of the tracer: rays out, hits in. Neither calls it, so that queues, packets
+// and the order of rays are the business of serve.h. Media and contacts trace rays of their own (README.md says which).
 #pragma once
 #include <span>
 

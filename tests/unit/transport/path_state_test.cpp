@@ -1,5 +1,5 @@
 // All that is remembered of a path stands in docs/develop/path_state.md: every member of every struct that there is one
-// of for each path, read from the headers, with its bytes. And the kernel keeps few members.
+// of for each path, read from the headers, with its bytes and those of the whole. And the kernel keeps few members.
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "transport/media/live_path.h"
+#include "transport/refracted/search.h"
 
 namespace suite::test::path_state_test {
 namespace {
@@ -144,19 +145,45 @@ TEST(PathState, ThePageListsEveryMember) {
   for (const auto& [name, rows] : listed) ADD_FAILURE() << "the page tells of " << name << ", which nothing checks";
 }
 
+// What the page says of a struct, its table left out.
+std::string section(const std::string& name) {
+  std::istringstream lines(text_of("docs/develop/path_state.md"));
+  std::string text;
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("## ")) inside = line == "## `" + name + "`";
+    if (inside && !line.starts_with("|")) text += line + "\n";
+  }
+  return text;
+}
+
+// As the page writes it: 14,296.
+std::string written(size_t n) {
+  std::string digits = std::to_string(n);
+  for (size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  return digits;
+}
+
+// Whether a text has a number, followed by words.
+bool says(const std::string& text, size_t n, const std::string& words) {
+  return std::regex_search(text, std::regex("(^|[^0-9,])" + written(n) + words));
+}
+
 // Structured bindings fail to compile for another number of members.
 template <class... T>
 std::vector<size_t> sizes(const T&... x) {
   return {sizeof(x)...};
 }
 void expect_bytes(const char* name, size_t whole, const std::vector<size_t>& bytes) {
-  const std::vector<Row> rows = page()[name];
+  static const std::map<std::string, std::vector<Row>> all = page();
+  const std::vector<Row>& rows = all.at(name);
   ASSERT_EQ(rows.size(), bytes.size()) << name;
   size_t sum = 0;
   for (size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(rows[i].bytes, bytes[i]) << name << "::" << rows[i].name;
     sum += bytes[i];
   }
+  EXPECT_TRUE(says(section(name), whole, "( bytes)? with gaps")) << name << ": " << whole;
   std::cout << name << ": " << rows.size() << " members, " << sum << " bytes, " << whole << " with gaps\n";
 }
 
@@ -164,6 +191,8 @@ TEST(PathState, ThePageTellsTheirBytes) {
   const LivePath l{};
   const auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, c0, c1, c2, c3, c4, c5,
                c6, c7, c8] = l;
+  EXPECT_TRUE(says(section("Lane"), sizeof(Lane<1>), " at one")) << sizeof(Lane<1>);
+  EXPECT_TRUE(says(section("PathClaims"), sizeof(PathClaims), " bytes")) << sizeof(PathClaims);
   expect_bytes("Lane", sizeof l,
                sizes(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, c0, c1, c2, c3, c4,
                      c5, c6, c7, c8));
@@ -184,6 +213,40 @@ TEST(PathState, ThePageTellsTheirBytes) {
   expect_bytes("FirstMeeting", sizeof first, sizes(h0, h1, h2, h3, h4));
 }
 
+TEST(PathState, ThePageTellsTheBytesOfSearches) {
+  const RefractedSearch search{};
+  const auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, c0, c1, c2, c3, c4, c5,
+               c6, c7, c8, c9, d0, d1, d2] = search;
+  expect_bytes("RefractedSearch", sizeof search,
+               sizes(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, c0, c1, c2, c3, c4,
+                     c5, c6, c7, c8, c9, d0, d1, d2));
+  const TracedWay traced{};
+  const auto& [e0, e1, e2, e3, e4, e5, e6, e7, e8] = traced;
+  expect_bytes("TracedWay", sizeof traced, sizes(e0, e1, e2, e3, e4, e5, e6, e7, e8));
+  const StraightLeg leg{};
+  const auto& [f0, f1, f2] = leg;
+  expect_bytes("StraightLeg", sizeof leg, sizes(f0, f1, f2));
+  const InterfaceChain chain{};
+  const auto& [g0, g1, g2] = chain;
+  expect_bytes("InterfaceChain", sizeof chain, sizes(g0, g1, g2));
+  const WayStart start{};
+  const auto& [h0, h1, h2, h3, h4] = start;
+  expect_bytes("WayStart", sizeof start, sizes(h0, h1, h2, h3, h4));
+  const WayEnd end{};
+  const auto& [i0, i1, i2, i3] = end;
+  expect_bytes("WayEnd", sizeof end, sizes(i0, i1, i2, i3));
+  const RefractedWay way{};
+  const auto& [j0, j1, j2, j3, j4, j5, j6, j7, j8, j9, k0] = way;
+  expect_bytes("RefractedWay", sizeof way, sizes(j0, j1, j2, j3, j4, j5, j6, j7, j8, j9, k0));
+  const RefractedEvent event{};
+  const auto& [l0, l1, l2, l3, l4, l5, l6, l7] = event;
+  expect_bytes("RefractedEvent", sizeof event, sizes(l0, l1, l2, l3, l4, l5, l6, l7));
+  // Copies take the events that there are: one of each way.
+  const size_t ways = search.traced.size() + search.way.size();
+  const size_t unused = ways * (RefractedWay::kMostEvents - 1) * sizeof event;
+  EXPECT_TRUE(says(section("RefractedSearch"), sizeof search - unused, "")) << sizeof search - unused;
+}
+
 TEST(PathState, MembersAreRead) {
   // Negative control: a member more is one name more.
   EXPECT_EQ(names_in("double sum = 0, weight = 0"), (std::vector<std::string>{"sum", "weight"}));
@@ -191,6 +254,10 @@ TEST(PathState, MembersAreRead) {
   EXPECT_EQ(names_in("uint32_t times : 30, side : 1"), (std::vector<std::string>{"times", "side"}));
   EXPECT_TRUE(names_in("static constexpr int kKnots = K").empty());
   EXPECT_GT(members_of("lane.h", "Lane").size(), 20u);
+  // And other bytes are not found.
+  EXPECT_TRUE(says(section("RefractedSearch"), sizeof(RefractedSearch), " bytes with gaps"));
+  EXPECT_FALSE(says(section("RefractedSearch"), sizeof(RefractedSearch) + 8, " bytes with gaps"));
+  EXPECT_FALSE(says(section("RefractedSearch"), sizeof(RefractedSearch) % 1000, " bytes with gaps"));
 }
 
 TEST(PathState, TheKernelKeepsFewMembers) {
