@@ -31,7 +31,9 @@ struct JudgedBand {
 // (beside a detector's noise: variance / its variance);
 // the largest over the bands in `judged`, each times its weight. The count for another target is this divided by the
 // target squared, so that a run which is continued plans from the same pilot. 0 where no variance was seen; infinite
-// where the mean is 0. A problem's floor is its own goal's.
+// where the mean is 0. A problem's floor is its own goal's. The variance of a degree of polarisation is the larger of
+// two: about the degree of all neighbours together, and the mean of those about their own (jackknife); times 1 + the
+// square of that mean's relative standard error, which a few bright paths make large.
 std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, std::span<const JudgedBand> judged,
                              const Goals& goals);
 

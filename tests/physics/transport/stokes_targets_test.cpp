@@ -181,9 +181,9 @@ void expect_unbiased(const World& w, double target, uint32_t paths) {
 }
 
 TEST(StokesTargets, RoughMetal) { expect_at_target("rough metal", metal(), 0.0015); }
-// The plan is short here: a pilot of 32 paths expects half of the variance that 200 paths have. Errors are reported as
-// they are, so that the last line of a run has the share of pixels at the target.
-TEST(StokesTargets, LayerOfAir) { expect_at_target("layer of air", air(), 0.04, 2.2); }
+// A few paths bring most of the light of a pilot here, which the degree of a single pilot follows; and pilots of 32
+// paths have seen too few of the rarest ones, which make a sixth of the variance.
+TEST(StokesTargets, LayerOfAir) { expect_at_target("layer of air", air(), 0.04, 1.2); }
 TEST(StokesTargets, PaintedBall) { expect_at_target("painted ball", ball(), 0.02); }
 
 TEST(StokesTargets, StoppingEarlyDoesNotBiasTheDegree) {
