@@ -1,4 +1,4 @@
-#include "math/mueller.h"
+#include "math/coherency.h"
 
 #include <algorithm>
 #include <complex>

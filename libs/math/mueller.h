@@ -144,11 +144,6 @@ Mueller to_world(const Mueller& local, const Frame& frame, Dir out, Dir in);
 // Least eigenvalue of the coherency matrix H = 1/4 sum m_ij sigma_i x sigma_j*: a matrix is that of something that
 // exists when none is negative. Based on: S. R. Cloude, "Group theory and polarisation algebra", Optik 75, 1986.
 double least_coherency(const Mueller& m);
-// Whether all eigenvalues of H exceed a number: faster.
-bool coherency_exceeds(const Mueller& m, double least);
-// The same matrix with negative eigenvalues of H taken as 0, and its m11, >= 0, kept: what noise of a measurement or an
-// approximation has made impossible becomes possible. A matrix that is possible stays as it is.
-Mueller physical(const Mueller& m);
 
 // Conventions of others, by the signs that their I, Q, U, V have where ours are positive: S_theirs = D S_ours.
 struct StokesConvention {

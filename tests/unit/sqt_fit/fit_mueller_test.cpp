@@ -1,6 +1,7 @@
 // Tables of Mueller matrices: thinned to an error, and possible everywhere.
 #include <gtest/gtest.h>
 
+#include "math/coherency.h"
 #include "math/sampling.h"
 #include "math/warps.h"
 #include "sqt_fit/mueller_fit.h"
