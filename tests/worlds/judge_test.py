@@ -4,11 +4,14 @@ import math
 import os
 import random
 import sys
+import tempfile
 import unittest
+from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 import judge  # noqa: E402
+import programs  # noqa: E402
 from programs import Picture  # noqa: E402
 from relations import Case  # noqa: E402
 
@@ -95,6 +98,29 @@ class Judging(unittest.TestCase):
         a, b = pair(random.Random(1))
         a["frame"].values[0][3] = math.nan
         self.assertEqual(judge.screen(CASE, [a, b]).p, 0.0)
+
+
+class TimeLimit(unittest.TestCase):
+    """Of programs: their own CPU time counts, not what the clock runs while others have the processor."""
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        self.programs = programs.Programs(scratch.name, scratch.name)
+        limit = mock.patch.object(programs, "TIMEOUT_S", 1)
+        limit.start()
+        self.addCleanup(limit.stop)
+
+    def python(self, text):
+        return self.programs.run([sys.executable, "-c", text], self.folder)
+
+    def test_who_waits_longer_than_that_ends(self):
+        self.assertEqual(self.python("import time; time.sleep(1.5); print('done')"), "done\n")
+
+    def test_who_computes_longer_than_that_does_not(self):
+        with self.assertRaisesRegex(programs.Refused, "no end after 1 s of CPU"):
+            self.python("while True: pass")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -12,7 +13,8 @@ import envi  # noqa: E402
 from lidar import photons_of  # noqa: E402
 from rows_model import FIT, PHASE_FIT  # noqa: E402
 
-TIMEOUT_S = 400
+TIMEOUT_S = 400                # of CPU: that other programs hold the processor is no fault of a world
+STUCK = 10                     # times as long by the clock, for what waits and never ends
 FITS = {FIT: "ward:diffuse=0.2,specular=0.2,roughness=0.3", PHASE_FIT: "hg:g=0.5"}  # of sqt-fit --model
 
 
@@ -55,10 +57,14 @@ class Programs:
         return os.path.join(self.binaries, name)
 
     def run(self, command, folder):
+        late = Refused(-1, f"no end after {TIMEOUT_S} s of CPU: {' '.join(command)}")
         try:
-            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, errors="replace")
-        except subprocess.TimeoutExpired as late:
-            raise Refused(-1, f"no end after {TIMEOUT_S} s: {' '.join(command)}") from late
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=STUCK * TIMEOUT_S, errors="replace",
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT_S, TIMEOUT_S + 5)))
+        except subprocess.TimeoutExpired as stuck:
+            raise late from stuck
+        if done.returncode == -signal.SIGXCPU:
+            raise late
         if done.returncode:
             text = (done.stdout + done.stderr).strip()
             at = max(text.find("error"), 0)
