@@ -18,6 +18,13 @@ STUCK = 10                     # times as long by the clock, for what waits and 
 FITS = {FIT: "ward:diffuse=0.2,specular=0.2,roughness=0.3", PHASE_FIT: "hg:g=0.5"}  # of sqt-fit --model
 
 
+def limit_seconds():
+    """Of the processor, for a program about to start; a tighter limit that it inherits stays."""
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)
+    hard = TIMEOUT_S + 5 if most == resource.RLIM_INFINITY else min(most, TIMEOUT_S + 5)
+    resource.setrlimit(resource.RLIMIT_CPU, (min(TIMEOUT_S, hard), hard))
+
+
 class Refused(Exception):
     """A program ended with another code than 0: code, and the last lines of what it said."""
 
@@ -60,7 +67,7 @@ class Programs:
         late = Refused(-1, f"no end after {TIMEOUT_S} s of CPU: {' '.join(command)}")
         try:
             done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=STUCK * TIMEOUT_S, errors="replace",
-                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT_S, TIMEOUT_S + 5)))
+                                  preexec_fn=limit_seconds)
         except subprocess.TimeoutExpired as stuck:
             raise late from stuck
         if done.returncode == -signal.SIGXCPU:

@@ -151,6 +151,25 @@ TEST(Mueller, PriestGermerAgreesWithScatmech) {
   EXPECT_EQ(compared, 32);
 }
 
+// Whatever shadows facets, the matrix over m11 is Fresnel's of the one that mirrors: all rows of facets, with four laws of
+// shadowing.
+TEST(Mueller, FacetsOfEveryShadowingAgreeWithScatmech) {
+  int compared = 0;
+  for (const Line& l : table("scatmech_mueller_brdf.csv")) {
+    if (l.name.find("facet_gauss") == std::string::npos) continue;
+    const auto& v = l.values;
+    const Pair d(v[0], v[1], v[2]);
+    const std::complex<double> index =
+        l.name.find("glass") != std::string::npos ? std::complex<double>(1.5, 0) : std::complex<double>(1.39, 7.65);
+    const double cosine = dot(d.out, normalized(d.out + d.in));
+    const PlaneBlocks f = fresnel_reflection(cosine, index);
+    const Mueller theirs = converted(ScatteringPlane(d.out, d.in).matrix(f * (1 / f.a)), kStokesConventions[1]);
+    for (size_t i = 1; i < 16; ++i) EXPECT_NEAR(theirs.m[i], v[3 + i] / v[3], 1e-6) << l.name << ' ' << i;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 96);
+}
+
 // Every model's matrices: m11 is what eval says (by definition 1), they exist, and what is reciprocal in intensity is
 // so as a matrix: M(in -> out) = D M(-out -> -in)^T D with D = diag(1, 1, -1, 1). With roles of out and in exchanged
 // the directions of travel are reversed.
