@@ -57,7 +57,7 @@ scene: scene.h5
 sun: {direction: {zenith_deg: 55, azimuth_deg: 0}, irradiance: 1000}
 sensors:
   - {kind: frame_camera, name: cam, columns: 1, rows: 1, pitch_um: 1, focal_length_mm: 100, position_m: [0, -14.281480067, 10], look_at_m: [0, 0, 0],
-     paths: 16, stokes: [i, q, u, v], bands: [{name: red, center_um: 0.65, fwhm_um: 0.01, shape: box}]}
+     paths: 16, stokes: [i, q, u, v], bands: [{name: red, center_um: 0.65, fwhm_um: 0.01, shape: rectangular}]}
 )";
 
 TEST_F(MeasuredMatrices, AreSeenInThePicture) {
