@@ -34,7 +34,8 @@ TEST(FuzzMuellerCsv, Text) {
   for (int i = 1; i <= 4; ++i)
     for (int j = 1; j <= 4; ++j) text += strf(",m%d%d", i, j);
   for (const char* at : {"0,0,0", "0,50,0", "40,0,0", "40,50,0", "0,0,180", "0,50,180", "40,0,180", "40,50,180"})
-    text += std::string("\n") + at + ",0.5,0.3,0.1,0,0,0.1,0.2,0,0,0,0,0.2,0,0,0,0,nan";
+    text += std::string("\n") + at + ",0.5,0.3,0.1,0,0,0.1,0.2,0,0,0,0,0.2,0,0,0,0,0.1";
+  text += "\n80,0,0,0.5,nan,0.1,0,0,0.1,0.2,0,0,0,0,0.2,0,0,0,0,0.1";
   test::fuzz(
       test::bytes_of(text),
       [](std::span<const std::byte> b) {
