@@ -151,8 +151,8 @@ TEST(Mueller, PriestGermerAgreesWithScatmech) {
   EXPECT_EQ(compared, 32);
 }
 
-// Whatever shadows facets, the matrix over m11 is Fresnel's of the one that mirrors: all rows of facets, with four laws of
-// shadowing.
+// Whatever shadows facets, the matrix over m11 is Fresnel's of the one that mirrors: all rows of facets, with four laws
+// of shadowing.
 TEST(Mueller, FacetsOfEveryShadowingAgreeWithScatmech) {
   int compared = 0;
   for (const Line& l : table("scatmech_mueller_brdf.csv")) {
