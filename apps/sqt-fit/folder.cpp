@@ -68,9 +68,9 @@ Row unquoted(const std::string& line) {
 std::string settings_of(const SqtFitOptions& o) {
   return strf(
       "sqt-fit %s method %s order %lld views %lld threshold %.17g max_error %.17g max_bytes %lld min_peak %.17g "
-      "swap %d strict %d",
-      kVersion, o.method.c_str(), o.order, o.views, o.threshold, o.max_error, o.max_bytes, o.min_peak, o.swap,
-      o.strict);
+      "mueller_error %.17g swap %d strict %d",
+      kVersion, o.method.c_str(), o.order, o.views, o.threshold, o.max_error, o.max_bytes, o.min_peak, o.mueller_error,
+      o.swap, o.strict);
 }
 
 // Rows of an earlier table of the same settings, by the content of their files. Error: what stands there is no table of

@@ -211,6 +211,8 @@ void export_bundle(const InspectOptions& o, const SqtFile& file) {
   if (extension == ".csv") write_file(o.export_to, csv_of(*file.bundle, size));
   if (extension == ".raw") write_file(o.export_to, raw_of(*file.bundle, size));
   report_dirac(*file.bundle, o.export_to);
+  if (file.bundle->info().mueller)
+    warn(o.export_to + ": holds m11 alone; the Mueller matrices of the fit are left out");
   note("wrote " + o.export_to);
 }
 

@@ -67,6 +67,7 @@ TEST_F(MeasuredMatrices, AreSeenInThePicture) {
   EXPECT_THAT(read_text(folder_ / "fit.json"), HasSubstr("\"mueller\""));
   const CommandResult seen = run("sqt-inspect metal.sqt");
   EXPECT_THAT(seen.out, HasSubstr("m12/m11 55"));
+  EXPECT_THAT(run("sqt-inspect metal.sqt --export metal_m11.csv").err, HasSubstr("holds m11 alone"));
   write_text(folder_ / "scene.yaml", kScene);
   write_text(folder_ / "sim.yaml", kSim);
   ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5 -q").code, 0);
