@@ -51,13 +51,14 @@ Stokes read_stokes(const Params& p) {
   return {v[0], v[1], v[2], v[3]};
 }
 
-void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what) {
+void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what,
+               TableSigns signs) {
   for (const Params& row : table.items()) {
     const std::vector<double> v = row.as_numbers();
     if (v.empty() || (rows && v.size() != columns))
       throw row.error(std::string("the rows of ") + what + " must be equally long and not empty");
     for (const double x : v)
-      if (x < 0) throw row.error(std::string(what) + " holds a negative value");
+      if (x < 0 && signs == TableSigns::positive) throw row.error(std::string(what) + " holds a negative value");
     columns = v.size();
     ++rows;
     values.insert(values.end(), v.begin(), v.end());

@@ -79,6 +79,8 @@ LightSpecPtr make_light(const LightRow& first_of_key, const Params& p, const Lig
 Stokes read_stokes(const Params& p);
 
 // Rows of numbers >= 0 of equal length, appended to `values`. what: for errors, "a sky table".
-void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what);
+enum class TableSigns { positive, any };
+void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what,
+               TableSigns signs = TableSigns::positive);
 
 }  // namespace suite

@@ -28,13 +28,26 @@ SpectralState one_wavelength() {
 }
 }  // namespace
 
+namespace {
+void check_stokes(const SkyStokes& s) {
+  if (s.zeniths < 2 || s.azimuths < 1 || s.q.size() != s.zeniths * s.azimuths || s.u.size() != s.q.size())
+    throw Error(strf("a sky's tables of q and u, of %zu and %zu values, are not %zu zeniths by %zu azimuths",
+                     s.q.size(), s.u.size(), s.zeniths, s.azimuths));
+  for (size_t i = 0; i < s.q.size(); ++i)
+    if (!(std::hypot(s.q[i], s.u[i]) <= 1 + 1e-9))
+      throw Error(strf("a sky's degree of polarisation is %g", std::hypot(s.q[i], s.u[i])), "0 to 1");
+}
+}  // namespace
+
 Sky::Sky(const SkySpec& directions) : Sky(directions, one_wavelength()) {}
 
 Sky::Sky(const SkySpec& spec, const SpectralState& state)
     : theta_max_(spec.full_sphere ? kPi : kPi / 2),
       full_sphere_(spec.full_sphere),
       cells_(spec.cells),
-      polarisation_(spec.polarisation) {
+      polarisation_(spec.polarisation),
+      stokes_(spec.stokes) {
+  if (stokes_) check_stokes(*stokes_);
   if (!spec.layers.empty())
     bake_layers(spec, state);
   else
@@ -254,7 +267,24 @@ std::optional<LightMet> Sky::met_outside(Dir d, double) const {
   return LightMet{spectrum() ? relative(place) : 1, spectrum(), density(place), source()};
 }
 
+Stokes Sky::tabulated_stokes(Dir d) const {
+  const SkyStokes& s = *stokes_;
+  double turns = std::atan2(d.y, d.x) / (2 * kPi);
+  turns -= std::floor(turns);
+  const double row = std::clamp(polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(s.zeniths - 1),
+               column = turns * static_cast<double>(s.azimuths);
+  const size_t r = std::min(s.zeniths - 2, static_cast<size_t>(row)), c = static_cast<size_t>(column) % s.azimuths,
+               n = (c + 1) % s.azimuths;
+  const double fr = row - static_cast<double>(r), fc = column - std::floor(column);
+  const auto mean = [&](const std::vector<double>& of) {
+    const double* const at = &of[r * s.azimuths];
+    return (1 - fr) * ((1 - fc) * at[c] + fc * at[n]) + fr * ((1 - fc) * at[s.azimuths + c] + fc * at[s.azimuths + n]);
+  };
+  return {1, mean(s.q), mean(s.u), 0};
+}
+
 Stokes Sky::stokes(uint32_t, Dir k, double) const {
+  if (stokes_) return tabulated_stokes(-k);
   SUITE_CHECK(polarisation_.has_value());
   const double c = dot(polarisation_->sun, -k), degree = polarisation_->most * (1 - c * c) / (1 + c * c);
   const Mueller m = ScatteringPlane(k, polarisation_->sun).matrix({1, -degree, 0, 0, 0, 0});

@@ -25,6 +25,13 @@ struct RayleighPattern {
   double most = 0;  // at right angles from the sun, 0 to 1
 };
 
+// Q and U over I of a sky's light, in the meridian frame of its direction of travel, at all wavelengths: rows and
+// columns as SkySpec::table, bilinear between.
+struct SkyStokes {
+  std::vector<double> q, u;  // hypot(q, u) <= 1
+  size_t zeniths = 0, azimuths = 0;
+};
+
 // The sky over the scene. Radiance below the horizon (z < 0) is zero unless `full_sphere`. What is given decides the
 // kind: `layers` a thermal sky, `table` a tabulated one, neither a uniform one.
 struct SkySpec {
@@ -42,7 +49,8 @@ struct SkySpec {
   // Emission of non-scattering layers over a plane Earth, with the zenith angles tabulated in `zeniths` rows (2 or
   // more).
   std::vector<ThermalLayer> layers = {};
-  std::optional<RayleighPattern> polarisation = {};  // nothing: unpolarised
+  std::optional<RayleighPattern> polarisation = {};  // neither: unpolarised
+  std::optional<SkyStokes> stokes = {};
 };
 
 LightSpecPtr make_light(SkySpec spec);
@@ -116,7 +124,9 @@ class Sky final : public Light {
   double theta_max_ = kPi / 2;
   bool full_sphere_ = false, cells_ = false;
   std::optional<RayleighPattern> polarisation_;
-  uint32_t source() const { return polarisation_ ? 0 : kUnpolarised; }
+  std::optional<SkyStokes> stokes_;
+  uint32_t source() const { return polarisation_ || stokes_ ? 0 : kUnpolarised; }
+  Stokes tabulated_stokes(Dir d) const;
 };
 
 }  // namespace suite

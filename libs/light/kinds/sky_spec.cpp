@@ -132,10 +132,29 @@ LightSpecPtr read_thermal(const Params& p, const LightContext& context) {
   return make_light(std::move(sky));
 }
 
+std::optional<SkyStokes> read_sky_stokes(const Params& p) {
+  const auto stokes = p.find("stokes");
+  if (!stokes) return std::nullopt;
+  SkyStokes s;
+  size_t rows = 0, columns = 0;
+  read_rows(stokes->at("q"), s.zeniths, s.azimuths, s.q, "a table of q", TableSigns::any);
+  read_rows(stokes->at("u"), rows, columns, s.u, "a table of u", TableSigns::any);
+  if (rows != s.zeniths || columns != s.azimuths) throw stokes->error("the tables of q and u differ in size");
+  if (rows < 2)
+    throw stokes->error("tables of q and u need at least two rows",
+                        "the first is the zenith, the last the horizon (the nadir with full_sphere)");
+  for (size_t i = 0; i < s.q.size(); ++i)
+    if (!(std::hypot(s.q[i], s.u[i]) <= 1 + 1e-9))
+      throw stokes->error(strf("a degree of polarisation of %g", std::hypot(s.q[i], s.u[i])),
+                          "q and u are over I: hypot(q, u) is 0 to 1");
+  return s;
+}
+
 LightSpecPtr read_tabulated(const Params& p, const LightContext& context) {
   SkySpec sky;
   sky.radiance = context.positive(p.at("radiance"), "radiance", "W/(m2 sr um)");
   sky.full_sphere = p.boolean("full_sphere", false);
+  sky.stokes = read_sky_stokes(p);
   const auto table = p.find("table");
   const auto tables = p.find("tables");
   if (table && tables) throw tables->error("`table` and `tables` exclude each other");

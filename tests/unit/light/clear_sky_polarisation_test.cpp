@@ -44,5 +44,25 @@ TEST(ClearSkies, PolariseAsMoleculesDo) {
   EXPECT_LT(clear_sky(dusty, sun, top).sky.polarisation->most, 0.5 * most);
 }
 
+// Tables of q and u, bilinear between rows and columns, around the circle.
+TEST(SkyTables, ArePolarisedAsTheySay) {
+  SkySpec spec;
+  spec.radiance = Curve::constant(2);
+  const Sky plain(spec, test_state(1));
+  EXPECT_EQ(plain.met_outside({0, 0, 1}, 0)->source, kUnpolarised);
+  spec.stokes = SkyStokes{{0, 0, 0, 0, 0.4, 0.2, 0, -0.2}, {0, 0, 0, 0, 0, 0.6, 0, 0}, 2, 4};
+  const Sky sky(spec, test_state(1));
+  const auto at = [&](double zenith, double azimuth) {
+    return sky.stokes(sky.met_outside({0, 0, 1}, 0)->source, -dir_from_angles(zenith, azimuth), 0);
+  };
+  EXPECT_NEAR(at(kPi / 2, 0)[1], 0.4, 1e-9);
+  EXPECT_NEAR(at(kPi / 4, kPi / 2)[1], 0.1, 1e-9);
+  EXPECT_NEAR(at(kPi / 4, kPi / 2)[2], 0.3, 1e-9);
+  EXPECT_NEAR(at(kPi / 2, kPi / 4)[1], 0.3, 1e-9);
+  EXPECT_NEAR(at(kPi / 2, -kPi / 4)[1], 0.1, 1e-9) << "from the last column to the first";
+  spec.stokes->q[0] = 1.2;
+  EXPECT_THROW(Sky(spec, test_state(1)), Error);
+}
+
 }  // namespace
 }  // namespace suite::clear_sky_polarisation_test
