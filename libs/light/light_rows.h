@@ -78,7 +78,7 @@ LightSpecPtr make_light(const LightRow& first_of_key, const Params& p, const Lig
 // A Stokes vector over its intensity, [1, Q, U, V]. Located Error for one of no light.
 Stokes read_stokes(const Params& p);
 
-// Rows of numbers >= 0 of equal length, appended to `values`. what: for errors, "a sky table".
+// Rows of numbers of equal length, >= 0 unless any are, appended to `values`. what: for errors, "a sky table".
 enum class TableSigns { positive, any };
 void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what,
                TableSigns signs = TableSigns::positive);
