@@ -35,7 +35,10 @@ void PathKernel<Wave>::escape(uint32_t p, bool in_field) {
     c.water = path.water;
     c.radiance = met->spectrum;
     if (!c.radiance) c.radiance = memory.data();
-    if (c.scale != 0) wave_.contribute();
+    if (c.scale == 0) continue;
+    wave_.leaves(c, met->source, -path.direction, path.time);
+    wave_.contribute();
+    if constexpr (Wave::kStokes) wave_.hand_over();
   }
 }
 
