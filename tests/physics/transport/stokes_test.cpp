@@ -4,6 +4,7 @@
 #include <complex>
 #include <optional>
 
+#include "light/kinds/sky.h"
 #include "math/instrument_frame.h"
 #include "math/warps.h"
 #include "optics/fresnel_mueller.h"
@@ -76,6 +77,31 @@ TEST(Stokes, AnalysersObeyMalus) {
 // Polarised lamps: a glowing wall seen directly, in a mirror and through polarizers. Closed forms: the lamp's Stokes
 // vector turned from its axis into the meridian; then Fresnel's matrix.
 const Stokes kOfLamps{1, 0.5, -0.6, 0.3};
+// A sky from a table, seen by itself and thrown up by a pane: met by chance, as smooth surfaces meet all light.
+TEST(Stokes, SkiesArePolarisedAsTheySay) {
+  SkySpec sky;
+  sky.radiance = Curve::constant(2);
+  sky.table = {1, 1, 1, 1, 0.5, 1, 2, 1}, sky.zeniths = 2, sky.azimuths = 4;
+  sky.stokes =
+      SkyStokes{{0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3}, {-0.2, -0.2, -0.2, -0.2, -0.2, -0.2, -0.2, -0.2}, 2, 4};
+  SourceSpecs sources;
+  sources.add(sky);
+  const auto open = scene_of({quad(1, -50, 0)}, {material("far", lambert(0))});
+  const auto pane = scene_of({quad(100, 0, 0)}, {material("glass", dielectric(1.5))});
+  for (const auto& [angle, turn] : {std::pair{0.3, 0.4}, std::pair{kBrewster, 2.0}, std::pair{1.2, -1.0}}) {
+    const Dir up = dir_from_angles(angle, turn);
+    const StokesSeen direct = see_stokes(open, sources, {{{}, up, 0}}, 16)[0];
+    EXPECT_NEAR(direct.S[1], 0.3 * direct.S[0], 1e-6);
+    EXPECT_NEAR(direct.S[2], -0.2 * direct.S[0], 1e-6);
+    const Ray ray = {Vec3{0, 0, 1} - Vec3{up.x, up.y, 0}, Dir{up.x, up.y, -up.z}, 0};
+    const Stokes thrown =
+        ScatteringPlane(-ray.direction, up).matrix(fresnel_reflection(std::cos(angle), 1.5)) * Stokes{1, 0.3, -0.2, 0};
+    const StokesSeen mirrored = see_stokes(pane, sources, {ray}, 256)[0];
+    for (size_t k = 1; k < 4; ++k)
+      EXPECT_NEAR(mirrored.S[k] * thrown[0], thrown[k] * mirrored.S[0], 1e-6) << "the ratio has no noise";
+  }
+}
+
 TEST(Stokes, LampsArePolarisedAsTheySay) {
   const Stokes given = kOfLamps;
   LampSpec lamp = glow("shine", 2, true);
