@@ -1,5 +1,6 @@
 # cmake -DSOURCE=... -DTO=file.cpp -P commit.cmake: writes the commit of the sources that programs are compiled of into TO, which stays
 # untouched while the commit is the same. Texts, tests and scripts do not count: with them alone no program changes.
+cmake_minimum_required(VERSION 3.25)
 set(commit "")
 find_program(git git)
 if(git AND EXISTS ${SOURCE}/.git)
