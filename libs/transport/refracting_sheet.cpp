@@ -134,4 +134,10 @@ RefractingSheet::Ways RefractingSheet::ways(Vec3 place, Dir to, double index) co
   return std::tan(tilt) * far + deep * per_turn * turn_ < kSafe ? Ways::one : Ways::unknown;
 }
 
+RefractingSheet::Ways RefractingSheet::ways_between(Vec3 one, Vec3 other) const {
+  const double a = dot(one, axis_) - low_, b = dot(other, axis_) - low_;
+  if (low_ != high_ || turn_ != 0 || least_cosine_ != 1 || a == 0 || b == 0) return Ways::unknown;
+  return (a > 0) == (b > 0) ? Ways::none : Ways::one;
+}
+
 }  // namespace suite

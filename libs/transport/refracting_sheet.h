@@ -25,6 +25,9 @@ class RefractingSheet {
   enum class Ways : uint8_t { none, one, unknown };
   // How many ways at most lead from a place to light of direction `to` (unit). index: behind the surface over in front.
   Ways ways(Vec3 place, Dir to, double index) const;
+  // The same between two places, of a flat one: a ray that has passed it never meets it again, and of all ways from one
+  // side to the other the refracted one is the shortest in time (Fermat), which there is one of.
+  Ways ways_between(Vec3 one, Vec3 other) const;
   // m, below its nearest height, on either side; 0 between its heights.
   double deep(Vec3 place) const { return std::max({0.0, low_ - dot(place, axis_), dot(place, axis_) - high_}); }
   double steepness(Dir direction) const { return std::fabs(dot(direction, axis_)); }

@@ -29,16 +29,17 @@ void RefractedSight::set_sheet(const Optics& optics, uint32_t number) {
 // Where that is known the only way that there can be, or none; else starts are drawn.
 auto RefractedSight::look_through_sheet(RefractedSearch& s) -> Turn {
   s.sheet = false;
-  if (!sheet_ || !s.end.far) return look_straight(s);
+  if (!sheet_) return look_straight(s);
   const double index = interfaces_.index(sheet_material_, s.knot);
-  const RefractingSheet::Ways ways = sheet_->ways(s.node.place, s.end.direction, index);
+  const RefractingSheet::Ways ways =
+      s.end.far ? sheet_->ways(s.node.place, s.end.direction, index) : sheet_->ways_between(s.node.place, s.end.place);
   if (ways == RefractingSheet::Ways::none) return Turn::ended;
   return ways == RefractingSheet::Ways::one ? walk_through_sheet(s) : look_straight(s);
 }
 
 // From where flat water would have the way leave the node.
 auto RefractedSight::walk_through_sheet(RefractedSearch& s) -> Turn {
-  const auto start = sheet_guess(s.end.direction, s.knot);
+  const auto start = sheet_guess(s.straight, s.knot);
   s.sheet = true;
   s.sought = {.events = 1};
   return start ? shoot(s, At::sheet, *start, s.sought, Role::probe) : miss_sheet(s);

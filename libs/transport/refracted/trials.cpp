@@ -9,8 +9,10 @@ namespace suite {
 
 namespace {
 
-constexpr int kMostStarts = 8;  // of a trial
-constexpr int kMostWalks = 3;   // of these: that pass an interface and run towards the light
+// Most nodes have no way, and pay for a whole trial to know it: a walk is dear, a start that meets no interface is not.
+constexpr int kMostStarts = 8;          // of a trial
+constexpr int kMostMirroredStarts = 2;  // the same, of ways with reflections: they are weak
+constexpr int kMostWalks = 1;           // of these: that pass an interface and run towards the light
 
 }  // namespace
 
@@ -88,7 +90,7 @@ auto RefractedSight::look_for(RefractedSearch& s, bool mirrored) -> Turn {
 // A trial: the way that one of a few random starts leads to.
 auto RefractedSight::next_start(RefractedSearch& s) -> Turn {
   constexpr double kReflects = 0.4;
-  if (s.starts == kMostStarts || s.walks == kMostWalks) return tried(s, false);
+  if (s.starts == (s.mirrored ? kMostMirroredStarts : kMostStarts) || s.walks == kMostWalks) return tried(s, false);
   ++s.starts;
   s.start = draw_start(s);
   s.sought = {};

@@ -283,8 +283,26 @@ TEST(WaterChain, KnowsWhereThereIsOneWay) {
   EXPECT_EQ(calm->ways({16, 16, -8}, low, kIndex), Ways::unknown);
   EXPECT_EQ(calm->ways({16, 16, 1}, sun, kIndex), Ways::none);
   EXPECT_EQ(calm->ways({16, 16, 0}, sun, kIndex), Ways::unknown);
+  EXPECT_EQ(calm->ways_between({16, 16, -8}, {16, 16, -1}), Ways::unknown) << "a wave may throw light into the next";
   const auto steep = sheet(0.5, 4);
   EXPECT_TRUE(!steep || steep->ways({16, 16, -8}, sun, kIndex) == Ways::unknown);
+}
+
+// Between places over and under a plane there is one way, and none between places on one side of it, however it lies.
+TEST(WaterChain, KnowsWhereThereIsOneWayToALamp) {
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {material("surface", lambert(0))};
+  const Dir up = normalized(Vec3{0.3, 0.1, 1}), along = normalized(cross({0, 1, 0}, up)), aside = cross(up, along);
+  const Affine3 tilted{{along.x, aside.x, up.x, along.y, aside.y, up.y, along.z, aside.z, up.z}, {3, 0, 2}};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0, tilted);
+  const Tracer tracer(scene);
+  const auto flat = RefractingSheet::of(tracer, 0, tracer.object(0));
+  ASSERT_TRUE(flat.has_value());
+  using Ways = RefractingSheet::Ways;
+  const Vec3 over = Vec3{3, 0, 2} + up * 0.5, under = Vec3{13, -4, 2} - up * 9.0;
+  EXPECT_EQ(flat->ways_between(over, over + along * 9.0), Ways::none);
+  EXPECT_EQ(flat->ways_between(under, under - up), Ways::none);
+  EXPECT_EQ(flat->ways_between(over, under - up * 4.0), Ways::one);
 }
 
 }  // namespace
