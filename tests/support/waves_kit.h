@@ -1,7 +1,9 @@
 // Light forwards, for tests of light that is asked for backwards: from the sun through a smooth interface to a grid on
 // a floor, by code that shares nothing with the suite but vectors.
 #pragma once
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "math/vec.h"
@@ -38,11 +40,13 @@ struct FluxMap {
   double width;  // m
   double floor;  // m
   std::vector<double> flux = std::vector<double>(static_cast<size_t>(cells) * static_cast<size_t>(cells));
-  void add(Vec3 from, Vec3 direction, double amount) {
+  // Whether it falls onto the grid.
+  bool add(Vec3 from, Vec3 direction, double amount) {
     const double t = (floor - from.z) / direction.z, x = (from.x + t * direction.x) / width + 0.5,
                  y = (from.y + t * direction.y) / width + 0.5;
-    if (x < 0 || x >= 1 || y < 0 || y >= 1) return;
+    if (x < 0 || x >= 1 || y < 0 || y >= 1) return false;
     flux[static_cast<size_t>(y * cells) * static_cast<size_t>(cells) + static_cast<size_t>(x * cells)] += amount;
+    return true;
   }
   double cell_area() const { return width * width / (cells * cells); }
 };
@@ -52,13 +56,21 @@ struct Wave {
   double a, kx, ky, phase;
 };
 
+// The square of surface that is lit: its middle, its side and rays a side.
+struct Lit {
+  double x, y, side;  // m
+  int steps;
+};
 // A parallel beam of irradiance 1 (on a plane facing it) from `sun` through a surface of waves about z = 0 that does
-// not shadow itself; side: of the square of surface that is lit, steps: rays a side. eta: water over air.
-inline void light_waves(FluxMap& map, const std::vector<Wave>& waves, Vec3 sun, double eta, double side, int steps) {
-  const double h = side / steps;
-  for (int j = 0; j < steps; ++j)
-    for (int i = 0; i < steps; ++i) {
-      const double x = (i + 0.5) * h - side / 2, y = (j + 0.5) * h - side / 2;
+// not shadow itself, onto several floors; eta: water over air. Returns how many rays of the outermost hundredth of the
+// square still fall onto a map: 0, or what lies outside of the square is missed.
+inline int light_waves(std::span<FluxMap> maps, const std::vector<Wave>& waves, Vec3 sun, double eta, const Lit& lit) {
+  const double h = lit.side / lit.steps;
+  const int rim = lit.steps / 100;
+  int missed = 0;
+  for (int j = 0; j < lit.steps; ++j)
+    for (int i = 0; i < lit.steps; ++i) {
+      const double x = lit.x + (i + 0.5) * h - lit.side / 2, y = lit.y + (j + 0.5) * h - lit.side / 2;
       double z = 0, zx = 0, zy = 0;
       for (const Wave& w : waves) {
         const double phase = w.kx * x + w.ky * y + w.phase;
@@ -68,8 +80,10 @@ inline void light_waves(FluxMap& map, const std::vector<Wave>& waves, Vec3 sun, 
       const double flux = dot(sun, up) * h * h;
       if (flux <= 0) continue;
       const Forward f = forward_refract(-sun, normalized(up), eta);
-      map.add({x, y, z}, f.direction, flux * f.transmittance);
+      const bool outermost = std::min({i, j, lit.steps - 1 - i, lit.steps - 1 - j}) < rim;
+      for (FluxMap& map : maps) missed += map.add({x, y, z}, f.direction, flux * f.transmittance) && outermost;
     }
+  return missed;
 }
 
 // The same beam on a sphere: what passes it by two refractions, and (beside) what passes beside it.

@@ -16,9 +16,13 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kFew = " --set heat.elements=600 --set heat.paths=16 --set heat.step_s=1800 --set heat.keep=operator";
-
-const std::string kRests = " --heat-only --set scene=rests.h5 --set heat.save_every_s=0" + kFew;
+// What is asked does not depend on gases, whose bins each run would find anew.
+const std::string kFewPaths =
+    " --set heat.paths=16 --set heat.step_s=3600 --set heat.keep=operator --set atmosphere.gases=none";
+const std::string kFew = " --set heat.elements=150" + kFewPaths;
+// As many as a search needs that lives until it is killed: three pieces of the sunlight of each interval of rest.
+const std::string kRests =
+    " --heat-only --set scene=rests.h5 --set heat.save_every_s=0 --set heat.elements=300" + kFewPaths;
 
 class HeatOperatorRun : public ProgramsTest<HeatOperatorRun> {
  protected:
@@ -152,9 +156,8 @@ TEST_F(HeatOperatorRun, TwoDaysLaterFindsOnlyItsSunlight) {
 }
 
 TEST_F(HeatOperatorRun, AKilledSearchGoesOnToTheSameBits) {
-  const std::string more =
-      " --heat-only --set heat.elements=1500 --set heat.paths=16 --set heat.step_s=1800"
-      " --set heat.keep=operator --set heat.save_every_s=0";
+  // Seven pieces of the sunlight.
+  const std::string more = " --heat-only --set heat.elements=800 --set heat.save_every_s=0" + kFewPaths;
   const CommandResult whole = run("dirsig-render sim.yaml -o entire" + more);
   ASSERT_EQ(whole.code, 0) << whole.err;
   const std::string pieces = *folder_ / "killed/heat_operator.pieces";
@@ -190,8 +193,8 @@ TEST_F(HeatOperatorRun, WhatDoesNotFitIsRefused) {
     EXPECT_THAT(r.err, HasSubstr(message)) << arguments;
   };
   const std::string first = "-o refused --heat-operator first/heat_operator.h5" + kFew;
-  refused(first + " --set heat.elements=700", "first/heat_operator.h5");
-  refused(first + " --set heat.elements=700", "another set of elements");
+  refused(first + " --set heat.elements=200", "first/heat_operator.h5");
+  refused(first + " --set heat.elements=200", "another set of elements");
   refused(first + " --set heat.paths=32", "another number of paths (16, here 32)");
   refused(first + " --seed 5", "another seed");
   refused("-o first --seed 5" + kFew, "another seed");

@@ -48,7 +48,9 @@ TEST_P(OpenFurnace, ConvexBodyReturnsItsTotal) {
   for (const double c : {0.45, 0.65, 0.85}) bands.push_back(Band::rectangular("b" + std::to_string(c), c, 0.01));
   SourceSpecs sources;
   sources.add(uniform_sky(2, true));
-  const auto run = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square(zeniths), bands, 1 << 16));
+  // Twice as many where weights vary most.
+  const uint32_t paths = GetParam().row == "ggx_dielectric" || GetParam().row == "coated" ? 1 << 16 : 1 << 15;
+  const auto run = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square(zeniths), bands, paths));
   // The reference is the model's own total, whose truth the conformance tests establish.
   const SpectralState state = make_state(bands, 0.01);
   const auto model = bake(scene->materials[0].surface, state);
