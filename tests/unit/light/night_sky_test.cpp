@@ -143,9 +143,10 @@ TEST(Airglow, LinesAddUpHoweverBinsCutThem) {
 // Smooth bands hold their rayleighs: photons of W/um.
 // The same in kilorayleigh: 51.28 from 1.4 to 1.8 um, 49.29 from 1.0 to 1.7 um, 80.93 in all.
 TEST(Airglow, LinesInRayleigh) {
-  const auto kilorayleigh = [](double low, double high) {
+  const std::vector<AirglowLayer> layers = airglow_layers(130);
+  const auto kilorayleigh = [&](double low, double high) {
     double sum = 0;
-    for (const GlowSpectrum::Line& line : airglow_layers(130).back().spectrum.lines)
+    for (const GlowSpectrum::Line& line : layers.back().spectrum.lines)
       if (line.wavelength_um >= low && line.wavelength_um < high)
         sum += line.power / rayleigh_radiance(1000, line.wavelength_um);
     return sum;
