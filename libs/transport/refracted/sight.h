@@ -30,7 +30,7 @@ namespace suite {
 
 class RefractedSight {
  public:
-  static constexpr int kMostTrials = 4096;
+  static constexpr int kMostTrials = 12288;  // of one walk each
 
   // Keeps references. Whether any ray can be asked for: interfaces().any().
   RefractedSight(const Surface& surface, const Optics& optics);
