@@ -121,8 +121,8 @@ class BinLayers {
   double depth_of(size_t n) const { return double{column_.extinction[below(n) * column_.bins + bin_]} * thickness(n); }
   DiffuseLayer joined(size_t g, bool emits) {
     const size_t kinds = column_.kinds.size(), end = level(g + 1);
-    double* const parts = &scattered_[g * kinds];
-    std::fill(parts, parts + kinds, 0.0);
+    const std::span parts = std::span(scattered_).subspan(g * kinds, kinds);
+    std::ranges::fill(parts, 0.0);
     DiffuseLayer to;
     double all = 0;
     for (size_t n = first_[g]; n < end; ++n) {
