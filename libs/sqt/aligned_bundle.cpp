@@ -229,7 +229,7 @@ class AlignedBundle final : public Bundle {
   static Place place(const ThetaGrid& grid, const ThetaGrid::At& at) {
     return {{at.low, std::min(at.low + 1, grid.size() - 1)}, {1 - at.t, at.t}, 2};
   }
-  Place place(const ThetaGrid& grid, Dir up) const {
+  [[gnu::always_inline]] Place place(const ThetaGrid& grid, Dir up) const {  // a call copies nine numbers
     const ThetaGrid::At at = grid.locate(fast_acos(up.z));
     const size_t phi_count = layout_.phi_count, next = std::min(at.low + 1, grid.size() - 1);
     if (phi_count == 1) return place(grid, at);

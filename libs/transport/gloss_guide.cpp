@@ -156,8 +156,10 @@ float GlossGuide::Cell::density(Vec3 place, Dir in) const {
   const auto ox = static_cast<float>(off.x), oy = static_cast<float>(off.y), oz = static_cast<float>(off.z);
   const auto ix = static_cast<float>(in.x), iy = static_cast<float>(in.y), iz = static_cast<float>(in.z);
   constexpr float kFarOut = 1e15f;
+  constexpr size_t kLanes = 8;  // of a vector
+  static_assert(kMost % kLanes == 0);
   std::array<float, kMost> each;
-  for (size_t i = 0; i < kMost; ++i) {
+  const auto lobe = [&](size_t i) {
     const float x = from_.x[i] - ox, y = from_.y[i] - oy, z = from_.z[i] - oz;
     const float ahead = x * facing_.x[i] + y * facing_.y[i] + z * facing_.z[i];
     const float cosine = ix * facing_.x[i] + iy * facing_.y[i] + iz * facing_.z[i];
@@ -167,8 +169,10 @@ float GlossGuide::Cell::density(Vec3 place, Dir in) const {
     const float b = px * across_.x[i] + py * across_.y[i] + pz * across_.z[i];
     const float q = 1 + a * a + b * b;
     // Far out in the plane single precision ends.
-    each[i] = way > 0 && q < kFarOut ? height_[i] * way * way / (std::fabs(cosine) * q * q) : 0.0f;
-  }
+    return way > 0 && q < kFarOut ? height_[i] * way * way / (std::fabs(cosine) * q * q) : 0.0f;
+  };
+  for (size_t first = 0; first < count_; first += kLanes)
+    for (size_t i = first; i < first + kLanes; ++i) each[i] = lobe(i);
   float sum = 0;
   for (size_t i = 0; i < count_; ++i) sum += each[i];
   return sum;

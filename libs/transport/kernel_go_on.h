@@ -75,21 +75,22 @@ bool PathKernel<Wave>::go_on(size_t i, const Continuation& on) {
 template <class Wave>
 double PathKernel<Wave>::weigh(uint32_t p, const Continuation& on, double own, double& brightest) {
   Path& path = wave_.paths[p];
-  for (size_t k = 0; k < wave_.knots(); ++k) {
+  const auto scatter = [&](size_t k) {
     const float w = on.weight.spectrum ? on.weight.spectrum[wave_.heroes.bins[k]] : 1;
     path.throughput[k] *= double{on.weight.scale} * w / own;
-  }
+  };
   if constexpr (Surfaces::kKnots == 1) {
+    scatter(0);
     brightest = path.throughput[0];
     return 1;
   }
   const bool two_ways = Space::kMedia && (on.branch != Branch::none || on.sided);
   if (two_ways) path.other.set(wave_.knots(), path.relative, on.other, own);
-  path.relative.take(wave_.knots(), on.density, own);
-  const double shares = path.relative.mean(wave_.P());
+  const double shares = path.relative.take_mean(wave_.P(), on.density, own);
   path.relative.divide(wave_.knots(), shares);
   if (two_ways) path.other.divide(wave_.knots(), shares);
   for (size_t k = 0; k < wave_.knots(); ++k) {
+    scatter(k);
     path.throughput[k] /= shares;
     if (!(path.throughput[k] <= brightest)) brightest = path.throughput[k];
     if (std::isnan(brightest)) return shares;

@@ -29,6 +29,16 @@ class HeroDensities {
   void take(size_t heroes, const P& p, double own) {
     for (size_t k = 0; k < heroes; ++k) r_[k] *= double{p[k]} / own;
   }
+  // take(), and the mean behind the choice.
+  template <class D>
+  double take_mean(std::span<const double> P, const D& p, double own) {
+    double sum = 0;
+    for (size_t k = 0; k < P.size(); ++k) {
+      r_[k] *= double{p[k]} / own;
+      sum += P[k] * r_[k];
+    }
+    return sum;
+  }
   // Those of `from` with one more choice.
   template <class P>
   void set(size_t heroes, const HeroDensities& from, const P& p, double own) {
