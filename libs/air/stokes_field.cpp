@@ -79,6 +79,8 @@ struct StokesField::State {
 
 namespace {
 
+constexpr double kMostSecant = 1e100;  // its square is finite
+
 void check(const StokesProblem& p) {
   if (p.layers.empty()) throw Error("air without layers", "give at least one");
   const auto refuse = [](size_t layer, const char* what) {
@@ -90,7 +92,10 @@ void check(const StokesProblem& p) {
     if (!is_share(layer.albedo)) refuse(l, "albedo");
     if (layer.matrix && (layer.matrix->degrees.empty() || std::fabs(layer.matrix->degrees[0].a1 - 1) > 1e-6))
       refuse(l, "scattering matrix, of which a1_0 is not 1");
-    if (!p.beam.secants.empty() && !(std::fabs(p.beam.secants[l]) <= 1e3)) refuse(l, "secant");
+    if (!p.beam.secants.empty()) {
+      const double secant = p.beam.secants[l];
+      if (!(std::fabs(secant) <= kMostSecant && secant * layer.depth >= -100)) refuse(l, "secant");
+    }
   }
   if (!p.beam.secants.empty() && p.beam.secants.size() != p.layers.size())
     throw Error("secants of the beam are not as many as layers", "one a layer, or none");

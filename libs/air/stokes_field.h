@@ -46,7 +46,7 @@ class StokesField {
   StokesField(StokesField&&) noexcept;
   StokesField& operator=(StokesField&&) noexcept;
 
-  // Error: values out of their ranges.
+  // Error: values out of their ranges; a secant times its layer's depth below -100, as in discrete_ordinates.h.
   void solve(const StokesProblem& problem);
 
   // Everything below is of the last solve().

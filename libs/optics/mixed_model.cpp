@@ -20,6 +20,7 @@ void add_scaled(const float* value, float scale, const float* spectrum, std::spa
 
 void MixedModel::reset(std::span<const size_t> knots) {
   parts_.clear();
+  products_.clear();
   knots_ = knots;
   std::fill_n(chance_sum_, kMaxKnots, 0.0);
 }
@@ -37,6 +38,19 @@ void MixedModel::add(const ScatterModel& model, float share, std::span<const flo
     chance_sum_[k] += part.chance[k];
   }
   parts_.push_back(part);
+}
+
+void MixedModel::add(const MixedModel& other, size_t first, size_t end, std::span<const float> factor) {
+  for (size_t p = first; p < end; ++p) {
+    const Part& part = other.parts_[p];
+    std::span<const float> spectrum = factor;
+    if (part.spectrum) {
+      std::vector<float>& product = products_.emplace_back(factor.begin(), factor.end());
+      for (size_t i = 0; i < product.size(); ++i) product[i] *= part.spectrum[i];
+      spectrum = product;
+    }
+    add(*part.model, part.share, spectrum);
+  }
 }
 
 void MixedModel::eval(Dir out, Dir in, std::span<float> w) const {

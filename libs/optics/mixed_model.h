@@ -20,6 +20,9 @@ class MixedModel final : public ScatterModel {
   // Adds a part. model must outlive this; share >= 0, of all wavelengths; spectrum: a further factor >= 0 per bin (one
   // value for each bin, must outlive this), empty = 1. The shares of all parts sum to 1 (less: the rest is black).
   void add(const ScatterModel& model, float share, std::span<const float> spectrum = {});
+  // Adds the parts first <= i < end of another mixture, each times a further factor >= 0 per bin; the shares need not
+  // sum to 1 then. The other's models and spectra and `factor` must outlive this. Bug: `other` is this.
+  void add(const MixedModel& other, size_t first, size_t end, std::span<const float> factor);
   size_t parts() const { return parts_.size(); }
 
   void eval(Dir out, Dir in, std::span<float> w) const override;
@@ -45,6 +48,7 @@ class MixedModel final : public ScatterModel {
     return chance_sum_[knot] > 0 ? part.chance[knot] / chance_sum_[knot] : 0;
   }
   std::vector<Part> parts_;
+  std::vector<std::vector<float>> products_;  // spectra times factors
   std::span<const size_t> knots_;
   double chance_sum_[kMaxKnots] = {};
 };

@@ -73,6 +73,7 @@ Shapes shapes_of(const MuellerBrdf::Data& data) {
 }
 
 // What a node of the data counts for: solid angles of both directions times their cosines; 0 at and below the horizon.
+// A single angle stands for all: of phi_d, whose others may have both directions above the horizon, and of theta_h.
 std::vector<double> node_weights(const HalfGrid& grid) {
   const auto steps = [](const std::vector<double>& a) {
     std::vector<double> d(a.size(), 1);
@@ -82,13 +83,18 @@ std::vector<double> node_weights(const HalfGrid& grid) {
   };
   const std::vector<double> dh = steps(grid.theta_h), dd = steps(grid.theta_d);
   std::vector<double> weight(grid.nodes());
+  const int azimuths = grid.phi_d.size() == 1 ? 16 : 1;
   for (size_t n = 0; n < weight.size(); ++n) {
-    const HalfAngles a = grid.angles(n);
-    Dir out, in;
-    a.directions(out, in);
-    if (!(out.z > 0 && in.z > 0)) continue;
+    HalfAngles a = grid.angles(n);
+    double cosines = 0;
+    for (int i = 0; i < azimuths; ++i, a.phi_d += 2 * kPi / azimuths) {
+      Dir out, in;
+      a.directions(out, in);
+      if (out.z > 1e-12 && in.z > 1e-12) cosines += out.z * in.z / azimuths;  // above by more than rounding
+    }
+    const double around = grid.theta_h.size() > 1 ? std::sin(a.theta_h) : 1;
     // The half vector's map to `in` has the Jacobian 4 cos theta_d.
-    weight[n] = out.z * in.z * std::sin(a.theta_h) * dh[n % dh.size()] * 4 * std::cos(a.theta_d) * std::sin(a.theta_d) *
+    weight[n] = cosines * around * dh[n % dh.size()] * 4 * std::cos(a.theta_d) * std::sin(a.theta_d) *
                 dd[n / dh.size() % dd.size()];
   }
   return weight;

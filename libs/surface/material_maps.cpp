@@ -125,6 +125,9 @@ bool BakedCube::shares(const MapPlace& place, std::span<float> low, std::span<fl
 
 namespace {
 
+// Emissivities below this count as none where emission is polarised: they are what rounding leaves of 1 - W.
+constexpr float kEmits = 1e-6f;
+
 // Adds what one material is at a place, mixtures apart, to a mixture; `share` of all wavelengths.
 void add_reflection(const BakedMaterial& m, const SpectralState& state, const MapPlace& place, float share,
                     LocalMaterial& memory, size_t& cubes) {
@@ -164,18 +167,22 @@ double blackbody_of(const BakedMaterial& m, const MapPlace& place, double time, 
 }
 
 // The blackbody radiance that, emitted with the emissivity of the whole, is what the parts emit: sum of shares times
-// (1 - W) B over 1 - W of the mixture.
-void mix_emission(const MaterialMaps& maps, const SpectralState& state, const MapPlace& place, double time, Dir out,
+// (1 - W) B over 1 - W of the mixture. True when the parts are not equally warm.
+bool mix_emission(const MaterialMaps& maps, const SpectralState& state, const MapPlace& place, double time, Dir out,
                   LocalMaterial& memory, BakedMaterial& made) {
   const size_t n = state.size();
   std::vector<float>& sum = made.blackbody;
   sum.assign(n, 0.0f);
   memory.totals.resize(n);
+  memory.glow.resize(maps.parts.size());
   double warm = 0, kelvin = 0;  // shares of the parts that emit, and their temperatures times shares
+  double lowest = INFINITY, highest = 0;
   // A part's own variation counts for its emissivity too.
   for (size_t p = 0; p < maps.parts.size(); ++p) {
     if (!(memory.fractions[p] > 0)) continue;
-    const double part = blackbody_of(*maps.parts[p], place, time, memory.radiance, n);
+    std::vector<float>& glow = memory.glow[p];
+    const double part = blackbody_of(*maps.parts[p], place, time, glow, n);
+    lowest = std::min(lowest, part), highest = std::max(highest, part);
     if (!(part > 0)) continue;
     warm += double{memory.fractions[p]}, kelvin += double{memory.fractions[p]} * part;
     LocalMaterial own;
@@ -184,13 +191,30 @@ void mix_emission(const MaterialMaps& maps, const SpectralState& state, const Ma
     size_t cubes = 0;
     add_reflection(*maps.parts[p], state, place, 1, own, cubes);
     own.mixed.total(out, memory.totals);
-    for (size_t i = 0; i < n; ++i)
-      sum[i] += memory.fractions[p] * std::max(0.0f, 1 - memory.totals[i]) * memory.radiance[i];
+    for (size_t i = 0; i < n; ++i) {
+      sum[i] += memory.fractions[p] * std::max(0.0f, 1 - memory.totals[i]) * glow[i];
+      if (!(1 - memory.totals[i] > kEmits)) glow[i] = 0;
+    }
   }
-  if (!(warm > 0)) return sum.clear();
+  if (!(warm > 0)) {
+    sum.clear();
+    return false;
+  }
   made.kelvin = kelvin / warm;
   memory.mixed.total(out, memory.totals);
   for (size_t i = 0; i < n; ++i) sum[i] = memory.totals[i] < 1 ? sum[i] / (1 - memory.totals[i]) : 0.0f;
+  return lowest < highest;
+}
+
+// What polarises the emission of a mixture of unequal temperatures: shares times B over that of the whole.
+void weigh_by_glow(const SpectralState& state, std::span<const float> whole, LocalMaterial& memory) {
+  memory.emitting.reset(state.knots);
+  for (size_t p = 0; p < memory.fractions.size(); ++p) {
+    std::vector<float>& glow = memory.glow[p];
+    if (!(memory.fractions[p] > 0) || glow.empty()) continue;
+    for (size_t i = 0; i < whole.size(); ++i) glow[i] = whole[i] > 0 ? glow[i] / whole[i] : 0.0f;
+    memory.emitting.add(memory.mixed, p > 0 ? memory.ends[p - 1] : 0, memory.ends[p], glow);
+  }
 }
 
 }  // namespace
@@ -201,6 +225,7 @@ const BakedMaterial* material_here(const BakedMaterial& base, const SpectralStat
   if (!maps.varies()) return &base;
   size_t cubes = 0;
   made.model = base.model;
+  made.emitting = nullptr;
   bool mixture = false;
   if (maps.mixture) {
     memory.fractions.resize(maps.parts.size());
@@ -209,8 +234,11 @@ const BakedMaterial* material_here(const BakedMaterial& base, const SpectralStat
   if (mixture) {
     memory.mixed.reset(state.knots);
     memory.spectra.resize(2 * maps.parts.size());
-    for (size_t p = 0; p < maps.parts.size(); ++p)
+    memory.ends.resize(maps.parts.size());
+    for (size_t p = 0; p < maps.parts.size(); ++p) {
       if (memory.fractions[p] > 0) add_reflection(*maps.parts[p], state, place, memory.fractions[p], memory, cubes);
+      memory.ends[p] = memory.mixed.parts();
+    }
     made.model = &memory.mixed;
   } else if (const auto index = maps.curve_index ? value_at(*maps.curve_index, place) : std::nullopt) {
     made.model = maps.variants[static_cast<size_t>(*index)].get();
@@ -221,7 +249,10 @@ const BakedMaterial* material_here(const BakedMaterial& base, const SpectralStat
     made.model = &memory.mixed;
   }
   made.kelvin = blackbody_of(base, place, time, made.blackbody, state.size());
-  if (!(made.kelvin > 0) && mixture) mix_emission(maps, state, place, time, out, memory, made);
+  if (!(made.kelvin > 0) && mixture && mix_emission(maps, state, place, time, out, memory, made)) {
+    weigh_by_glow(state, made.blackbody, memory);
+    made.emitting = &memory.emitting;
+  }
   return &made;
 }
 

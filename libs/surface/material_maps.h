@@ -5,7 +5,7 @@
 // which is exact for models that are linear in that curve, others are refused; else mixture puts other materials side
 // by side, each with its own curve_index, cube and temperature. Outside a map that does not extend, the material itself
 // holds. Temperature: of a map, else of a model, else constant. A mixture without a temperature of its own emits what
-// its parts emit. Based on: Goodenough & Brown, section III-A-3.
+// its parts emit, each polarised as its own matrices say. Based on: Goodenough & Brown, section III-A-3.
 #pragma once
 #include <memory>
 #include <vector>
@@ -64,7 +64,12 @@ struct MaterialMaps {
 struct LocalMaterial {
   MixedModel mixed;
   std::vector<std::vector<float>> spectra;  // shares of cubes
-  std::vector<float> fractions, totals, radiance;
+  std::vector<float> fractions, totals;
+  std::vector<size_t> ends;  // of each material of a mixture, among the parts of `mixed`
+  // Of each material of a mixture that emits: its blackbody radiance; where they are not equally warm, over that of the
+  // whole, and 0 where it does not emit.
+  std::vector<std::vector<float>> glow;
+  MixedModel emitting;  // the parts of `mixed` times that
 };
 
 }  // namespace suite

@@ -17,6 +17,8 @@ namespace suite {
 
 struct BakedMaterial {
   const ScatterModel* model = nullptr;
+  // Whose w times Mueller matrices polarise its emission; null = those of `model`. Mixtures of unequal temperatures.
+  const ScatterModel* emitting = nullptr;
   std::vector<float> blackbody;        // Planck radiance at the material's temperature per bin; empty = does not emit
   double kelvin = 0;                   // that temperature; of a mixture's parts their mean by share; 0 = does not emit
   bool needs_tangent = false;          // some direction along the surface is preferred

@@ -165,7 +165,8 @@ bool AnySurfaces::sample_way(uint32_t p, Dir out, int mirror, bool reflects, int
 ScatterModel::Polarised AnySurfaces::emission_mueller(uint32_t p, Dir out, Vec2 u, double lobe_u, int knot,
                                                       std::span<Mueller> m) const {
   const Interaction& at = *at_[p];
-  const ScatterModel& model = *at.baked->model;
+  // What the mixture's parts emit is weighed by their own radiance.
+  const ScatterModel& model = at.baked->emitting ? *at.baked->emitting : *at.baked->model;
   const Dir to = at.frame.to_local(out);
   std::fill(m.begin(), m.end(), Mueller::depolariser());
   if (model.diffuse()) return {true, 0};
@@ -186,7 +187,7 @@ ScatterModel::Polarised AnySurfaces::emission_mueller(uint32_t p, Dir out, Vec2 
     of = model.mueller(to, drawn->in, scattered);
   }
   if (!(density[knot] > 0)) return {true, 0};
-  model.total(to, W);
+  at.baked->model->total(to, W);
   const Dir in = at.frame.to_world(drawn->in);
   for (size_t b = 0; b < m.size(); ++b) {
     const double emissivity = 1 - double{W[b]};

@@ -78,7 +78,8 @@ class AnySurfaces {
   bool warm(uint32_t p) const { return at_[p]->baked && !at_[p]->baked->blackbody.empty(); }
   Emission emission(uint32_t p, Dir out, std::span<float> dense) const;
   // Its polarisation, in the first columns: Kirchhoff's law for every component, 1 - W_11, -W_21, -W_31, -W_41 over
-  // 1 - W_11, where the columns of W are estimated by light from one direction that is drawn at a knot.
+  // 1 - W_11, where the columns of W are estimated by light from one direction that is drawn at a knot; those of a
+  // mixture with shares times B over that of the whole.
   ScatterModel::Polarised emission_mueller(uint32_t p, Dir out, Vec2 u, double lobe_u, int knot,
                                            std::span<Mueller> m) const;
 

@@ -3,6 +3,8 @@
 
 #include "air/discrete_ordinates.h"
 #include "air/ordinate_angles.h"
+#include "air/stokes_field.h"
+#include "base/error.h"
 #include "support/phase_moments.h"
 
 namespace suite::test::ordinate_identities_test {
@@ -268,6 +270,66 @@ TEST(OrdinateIdentities, SecantsOfTheBeam) {
   EXPECT_NEAR(lit.fluxes({0, 0}).up / (scattered / 2), 1, 1e-3);
   EXPECT_EQ(lit.beam({2, 0.5}), 0);
   EXPECT_LT(lit.fluxes({0, 0}).direct, 0);
+}
+
+// A sun 7 degrees under the horizon of an exponential atmosphere on a round Earth: it comes up into the layers above
+// its shadow, thin ones, through air far below them, with secants of thousands. Unpolarised, the polarised field is
+// the scalar one.
+TEST(OrdinateIdentities, ThePolarisedFieldInDeepTwilight) {
+  constexpr double kEarth = 6371, kScale = 8, kVertical = 0.1, kSun = 97 * kPi / 180;
+  const std::vector<double> heights{120, 100, 80, 70, 60, 55, 50, 40, 20, 0};
+  const auto slant = [&](double height) {  // of the way that the sun's light has come
+    double depth = 0;
+    for (double s = 0.5; s < 3000; ++s) {
+      const double r = kEarth + height;
+      const double h = std::sqrt(r * r + s * s + 2 * r * s * std::cos(kSun)) - kEarth;
+      if (h < 0) return HUGE_VAL;
+      depth += kVertical / kScale * std::exp(-h / kScale);
+    }
+    return depth;
+  };
+  const std::vector<double> moments{1, 0.3, 0.1};
+  const GreekMatrix matrix = GreekMatrix::depolarising(moments);
+  std::vector<StokesAirLayer> layers;
+  std::vector<DiffuseLayer> scalar_layers;
+  std::vector<double> secants, tops;
+  for (size_t l = 0; l + 1 < heights.size(); ++l) {
+    const double depth = kVertical * (std::exp(-heights[l + 1] / kScale) - std::exp(-heights[l] / kScale));
+    const double above = slant(heights[l]), below = slant(heights[l + 1]);
+    layers.push_back({depth, 1, &matrix}), scalar_layers.push_back({depth, 1, moments});
+    secants.push_back(std::isfinite(below) ? (below - above) / depth : 20);
+    tops.push_back(l == 0 ? std::exp(-above) : std::isfinite(above) ? -1 : 0);
+  }
+  EXPECT_GT(*std::max_element(secants.begin(), secants.end()), 3e3);
+  StokesProblem problem;
+  problem.layers = layers;
+  problem.beam = {1, std::cos(kSun), secants, tops};
+  problem.ground_albedo = 0.3;
+  DiffuseProblem scalar;
+  scalar.layers = scalar_layers;
+  scalar.beam = problem.beam, scalar.ground_albedo = 0.3, scalar.azimuth_tolerance = 1e-12;
+  DiscreteOrdinates ordinates(16);
+  ordinates.solve(scalar);
+  StokesField field(StokesField::Light::polarised, 16, {0.05, 0.9});
+  field.solve(problem);
+  const std::vector<double> phase(layers.size(), 1 / (4 * kPi));
+  const std::vector<Stokes> single(layers.size(), Stokes{1 / (4 * kPi), 0, 0, 0});
+  for (int level = 0; level + 1 < static_cast<int>(heights.size()); ++level) {
+    const double up = ordinates.fluxes({level, 0}).up, down = ordinates.fluxes({level, 0}).down;
+    EXPECT_GT(up, 1e-9);
+    EXPECT_NEAR(field.fluxes(level).up, up, 1e-6 * up) << level;
+    EXPECT_NEAR(field.fluxes(level).down, down, 1e-6 * down + 1e-6 * up) << level;
+    for (size_t view = 0; view < 2; ++view)
+      for (const auto way : {StokesField::Way::up, StokesField::Way::down}) {
+        const double mu = view == 0 ? 0.05 : 0.9;
+        const double want = ordinates.radiance({level, 0}, way == StokesField::Way::up ? mu : -mu, 1.0, phase);
+        EXPECT_NEAR(field.radiance(level, view, way, 1.0, single)[0], want, 1e-5 * want + 1e-6 * up) << level << mu;
+      }
+  }
+  // What both refuse: a beam that grows by more than e^100 in a layer.
+  secants[2] = -101 / layers[2].depth;
+  EXPECT_THROW(field.solve(problem), Error);
+  EXPECT_THROW(ordinates.solve(scalar), Error);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "scene/texture.h"
 #include "spectral/planck.h"
-#include "tests/support/radiometry_kit.h"
+#include "tests/support/stokes_kit.h"
 
 namespace suite::test::maps_test {
 namespace {
@@ -183,6 +183,50 @@ TEST(Maps, TemperatureOfMapsTablesAndParts) {
   const Case mixed(parts, {fractions});
   r = mixed.run(straight_down({{0, 0}}), bands, {}, 1).result.radiance;
   EXPECT_NEAR(r[0], 0.3 * 0.6 * planck(300) + 0.7 * planck(280), 1e-5 * r[0]);
+}
+
+// The same behind polarizers: a smooth metal sends out polarised light, however much of the emissivity and of the light
+// is that of the wall beside it, whose spectrum is a map's. The last part emits nothing.
+TEST(Maps, PartsOfMixturesPolariseTheirOwnEmission) {
+  const ModelSpec metal{
+      "ggx", {{"roughness", 0.1}}, {{"n", Curve::constant(25.3)}, {"k", Curve::constant(89.8)}}, {}, nullptr};
+  const std::vector<Band> bands{Band::rectangular("t", 10, 0.1)};
+  const std::vector<float> shares{0.5f, 0.3f, 0.2f};
+  PropertyMap mixture = over_square(MapKind::mixture, 1, 1, 3, shares, Projection::drape),
+              spectrum = over_square(MapKind::cube, 1, 1, 2, {0.2f, 0.4f}, Projection::drape);
+  mixture.materials = {1, 2, 3};
+  spectrum.wavelength_um = {9, 11}, spectrum.parameter = "reflectance";
+  const Dir down = dir_from_angles(105 * kDegree, 0.7);
+  for (const auto& [metal_k, wall_k] : {std::pair{400.0, 300.0}, std::pair{300.0, 400.0}, std::pair{350.0, 350.0}}) {
+    Case c({material("mix", lambert(0)), material("metal", metal), material("wall", lambert(0.3)),
+            material("cold", lambert(0.5))},
+           {mixture, spectrum});
+    c.scene.materials[1].temperature_k = metal_k, c.scene.materials[2].temperature_k = wall_k;
+    c.scene.property_bindings = {{0, 0}, {2, 1}};
+    std::vector<StokesSeen> seen;  // the mixture, and its parts by themselves
+    for (uint32_t m = 0; m < 4; ++m) {
+      c.scene.meshes = {square(m)};
+      check_scene(c.scene, "case");
+      auto sensor = std::make_unique<StokesRays>(std::vector<Ray>{{Vec3{} - down * 5, down, 0}}, 4096, Polarimetry{},
+                                                 bands, 0.05);
+      seen.push_back(seen_of(render(std::make_shared<Scene>(c.scene), {}, std::move(sensor)).result)[0]);
+    }
+    Stokes wanted{};
+    double error = 0;
+    for (size_t k = 0; k < 4; ++k) {
+      error = seen[0].error[k];
+      for (size_t m = 1; m < 4; ++m) {
+        wanted[k] += double{shares[m - 1]} * seen[m].S[k];
+        error = std::hypot(error, double{shares[m - 1]} * seen[m].error[k]);
+      }
+      EXPECT_NEAR(seen[0].S[k], wanted[k], 12 * error + 1e-5 * wanted[0]) << "IQUV"[k] << metal_k;
+      if (k != 1) continue;
+      // As if all were equally warm, by the emissivities alone:
+      const double emissivity = 0.5 * seen[1].S[0] / planck_radiance(10, metal_k) + 0.3 * 0.7 + 0.2 * 0.5,
+                   alike = 0.5 * seen[1].S[1] / planck_radiance(10, metal_k) * wanted[0] / emissivity;
+      EXPECT_GT(std::fabs(alike - wanted[1]), 2 * 12 * error) << "the fault would be seen";
+    }
+  }
 }
 
 // A ramp of heights is a tilted plane: under a collimated sun of irradiance pi, Lambert gives rho cos(angle to its

@@ -59,6 +59,28 @@ TEST(MuellerFit, IsTheFormulaBetweenNodes) {
   EXPECT_LT(std::sqrt(sum / count), 0.006);
 }
 
+// Where the azimuth does not matter, angles count that are above the horizon at any.
+TEST(MuellerFit, CountsAllAzimuthsOfOne) {
+  sqt::MuellerBrdf::Data d;
+  d.grid.theta_h = {0, kPi / 4, kPi / 2}, d.grid.phi_d = {0}, d.wavelength_um = {0.5};
+  for (int i = 0; i <= 30; ++i) d.grid.theta_d.push_back(kPi / 2 * i / 30);
+  const auto matrix = [](double theta_d) {
+    const PlaneBlocks b = fresnel_reflection(std::cos(theta_d), {1.4, 1.9});
+    return (b * (0.9 / b.a)).matrix() + Mueller::depolariser() * 0.1;
+  };
+  for (size_t n = 0; n < d.grid.nodes(); ++n)
+    for (const double x : matrix(d.grid.angles(n).theta_d).m) d.values.push_back(static_cast<float>(0.2 * x));
+  const sqt::MuellerFit fit = sqt::fit_mueller({"facets", "formula", d}, 0.001);
+  EXPECT_LT(fit.errors.largest, 0.1) << "at the horizon, of little weight";
+  std::vector<Mueller> m(1);
+  for (int i = 0; i <= 21; ++i) {
+    Dir out, in;
+    sqt::HalfAngles{0.5, kPi / 2 * i / 30, kPi / 2}.directions(out, in);
+    fit.table->at(out, in, m);
+    for (size_t e = 1; e < 16; ++e) EXPECT_NEAR(m[0].m[e], matrix(kPi / 2 * i / 30).m[e], 0.01) << i << " " << e;
+  }
+}
+
 // Interpolated linearly, what is possible at nodes is possible between them; noise is made so, and told.
 TEST(MuellerFit, IsPossibleEverywhere) {
   const sqt::MuellerFit clean = sqt::fit_mueller(*test::polished_metal(), 0.01);
@@ -80,6 +102,40 @@ TEST(MuellerFit, ImpossibleMatricesBecomePossible) {
   EXPECT_NEAR(good(0, 1), 0.3, 0.1);
   const Mueller kept = PlaneBlocks{1, 0.3, 0.5, 0.1, 1, 0.5}.matrix();
   EXPECT_EQ(physical(kept), kept);
+}
+
+// A surface that prefers 0.4 Q + 0.2 U in meridian frames about its normal, whatever the plane of scattering: straight
+// back, as a laser and its receiver look, every plane is one.
+TEST(MuellerTable, StraightBackIsTheLimitOfAllPlanes) {
+  sqt::MuellerTable::Data d;
+  d.grid.theta_h = {0.2, 0.8, 1.4}, d.grid.theta_d = {0, 1}, d.wavelength_um = {0.5};
+  for (int i = 0; i < 180; ++i) d.grid.phi_d.push_back(-kPi + 2 * kPi * i / 180);
+  for (size_t n = 0; n < d.grid.nodes(); ++n) {
+    sqt::HalfAngles a = d.grid.angles(n);
+    a.theta_d = 1e-4;
+    Dir out, in;
+    a.directions(out, in);
+    Mueller q;
+    q(0, 1) = 1;
+    const Mueller turn = ScatteringPlane(out, in).turned(q);
+    std::vector<double> elements(sqt::MuellerTable::kElements);
+    elements[0] = 0.4 * turn(0, 1) + 0.2 * turn(0, 2), elements[1] = 0.2 * turn(0, 1) - 0.4 * turn(0, 2);
+    for (const double e : elements)
+      d.elements.push_back(static_cast<int16_t>(std::lround(e * sqt::MuellerTable::kUnit)));
+  }
+  const sqt::MuellerTable table(d);
+  for (const double zenith : {0.3, 0.7, 1.1})
+    for (int i = 0; i < 12; ++i) {
+      const Dir out = dir_from_angles(zenith, 0.3 + 0.5 * i);
+      for (const double off : {0.0, 1e-15, 1e-5}) {
+        const Dir in = normalized(out + dir_from_angles(0.4 * i, 1.0 * i) * off);
+        std::vector<Mueller> m(1);
+        table.at(out, in, m);
+        const Mueller seen = ScatteringPlane(out, in).turned(m[0]);
+        EXPECT_NEAR(seen(0, 1), 0.4, 0.002) << zenith << " " << i << " " << off;
+        EXPECT_NEAR(seen(0, 2), 0.2, 0.002) << zenith << " " << i << " " << off;
+      }
+    }
 }
 
 TEST(WholeCircle, TakesWholeAndHalfTurns) {
