@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "air/axis.h"
+#include "air/gas_intervals.h"
 #include "air/molecules.h"
 #include "air/particle_phase.h"
 #include "air/refraction.h"
@@ -36,22 +37,41 @@ std::vector<size_t> intervals_of(const SpectralState& state) {
 // share of a wavelength.
 constexpr double kParticleStep = 0.01;
 
-// Of one interval; at the levels. No gas at all where there is no provider.
-GasPoints points_of(const AirSpec& spec, std::span<const AirLevel> levels, const Bin& bin) {
-  if (!spec.gases) return {{1.0}, std::vector<float>(levels.size(), 0.0f)};
-  if (bin.low_um < spec.gases->low_um() || bin.high_um > spec.gases->high_um())
-    throw Error(spec.where,
-                strf("gases are known from %.4g to %.4g um, and a band reaches from %.4g to %.4g um",
-                     spec.gases->low_um(), spec.gases->high_um(), bin.low_um, bin.high_um),
-                "`gases: none` leaves them out");
-  return gas_points(*spec.gases, levels, bin.low_um, bin.high_um, spec.points);
-}
+// The gases of an air at its levels.
+class GasesAtLevels {
+ public:
+  GasesAtLevels(const AirSpec& spec, std::span<const AirLevel> levels) : spec_(spec) {
+    if (spec.gases)
+      intervals_ = shared_gas_intervals(spec.gases, levels, spec.points);
+    else
+      none_ = std::make_shared<const GasPoints>(GasPoints{{1.0}, std::vector<float>(levels.size(), 0.0f)});
+  }
+  // Of one interval. No gas at all where there is no provider.
+  std::shared_ptr<const GasPoints> points(const Bin& bin) const {
+    if (!intervals_) return none_;
+    if (bin.low_um < spec_.gases->low_um() || bin.high_um > spec_.gases->high_um())
+      throw Error(spec_.where,
+                  strf("gases are known from %.4g to %.4g um, and a band reaches from %.4g to %.4g um",
+                       spec_.gases->low_um(), spec_.gases->high_um(), bin.low_um, bin.high_um),
+                  "`gases: none` leaves them out");
+    return intervals_->points(bin.low_um, bin.high_um);
+  }
+
+ private:
+  const AirSpec& spec_;
+  std::shared_ptr<GasIntervals> intervals_;
+  std::shared_ptr<const GasPoints> none_;
+};
 
 class Baker {
  public:
   Baker(const AirSpec& spec, const SpectralState& state, ColumnParts parts)
-      : spec_(spec), state_(state), parts_(parts), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {},
-                                                                                      {},       {},           {}, 0} {
+      : spec_(spec),
+        state_(state),
+        parts_(parts),
+        levels_(air_levels(spec)),
+        gases_(spec, levels_),
+        column_{shells(), state.size(), {}, {}, {}, {}, {}, 0} {
     const double ground = spec.height_of_ground();
     while (column_.ground + 2 < levels_.size() && levels_[column_.ground].height < ground - 1) ++column_.ground;
     if (spec.refraction)
@@ -94,7 +114,8 @@ class Baker {
   // Absorption by gases, and Planck's function, which the g-points of an interval share. Of these some may be left out.
   void bake_interval(size_t first, size_t end) {
     const Bin& bin = state_.bins[first];
-    const GasPoints points = points_of(spec_, levels_, bin);
+    const std::shared_ptr<const GasPoints> shared = gases_.points(bin);
+    const GasPoints& points = *shared;
     for (size_t i = first; i < end; ++i) SUITE_CHECK(state_.bins[i].g < points.count());
     for (size_t l = 0; l < levels_.size(); ++l) {
       const double mean =
@@ -199,6 +220,7 @@ class Baker {
   const SpectralState& state_;
   ColumnParts parts_;
   std::vector<AirLevel> levels_;
+  GasesAtLevels gases_;
   AirColumn column_;
   std::vector<double> middles_;  // of the bins, um
 };
@@ -231,9 +253,10 @@ BeamTable bake_beam_table(const AirSpec& spec, const AirColumn& column) {
 SpectralState with_gas_points(const AirSpec& spec, const SpectralState& state) {
   check_air(spec);
   const std::vector<AirLevel> levels = air_levels(spec);
+  const GasesAtLevels gases(spec, levels);
   std::vector<std::vector<double>> weights(state.size());
   parallel_for(0, state.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) weights[i] = points_of(spec, levels, state.bins[i]).weight;
+    for (size_t i = begin; i < end; ++i) weights[i] = gases.points(state.bins[i])->weight;
   });
   return with_g_points(state, weights);
 }

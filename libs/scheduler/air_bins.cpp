@@ -71,8 +71,9 @@ std::vector<Bin> divided(const AirSpec& air, SpectralState even, std::span<const
   return done;
 }
 
-// Every bin must lie where gases are known; names the bands that ask for others.
-void check_known(const AirSpec& air, const SpectralState& state, std::span<const Band> bands) {
+}  // namespace
+
+void check_gases_known(const AirSpec& air, const SpectralState& state, std::span<const Band> bands) {
   if (!air.gases) return;
   const double low = air.gases->low_um(), high = air.gases->high_um();
   const auto beyond = [&](const Band& band) {
@@ -92,10 +93,8 @@ void check_known(const AirSpec& air, const SpectralState& state, std::span<const
         "other bands, a table that has them, or `gases: none`, which leaves gases out");
 }
 
-}  // namespace
-
 AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands) {
-  check_known(air, state, bands);
+  check_gases_known(air, state, bands);
   double narrowest = INFINITY;
   for (const Band& b : bands) narrowest = std::min(narrowest, b.high_um() - b.low_um());
   double limit = 0.5 * narrowest;

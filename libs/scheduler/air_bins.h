@@ -20,4 +20,7 @@ struct AirBins {
 // Error, located: bands beyond what the gases are known for, by name.
 AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands);
 
+// Error, located: the same.
+void check_gases_known(const AirSpec& air, const SpectralState& state, std::span<const Band> bands);
+
 }  // namespace suite

@@ -186,14 +186,15 @@ class StateInAir {
   // User's bins are even: for spectral_error 0, and where a widest bin is given.
   SpectralState make() {
     const bool even = !(state_.choice.error > 0) || state_.choice.widest_um > 0;
-    AirBins in_air = bins_in_air(air_, state_, bands_);  // refuses what gases are not known for
     if (!even) {
+      check_gases_known(air_, state_, bands_);
       const AirChoice choice(air_, paths_, seen_, state_, bands_, white_light_);
       SpectralState chosen = choice.choose(without_gases_.wanted());
       without_gases_.judge(choice.cells());
       note(choice.judge(chosen), choice.floors());
       return chosen;
     }
+    AirBins in_air = bins_in_air(air_, state_, bands_);
     without_gases_.judge(in_air.intervals);
     intervals_ = in_air.intervals.size();
     // Even bins that are as narrow as the cells are as good as these.

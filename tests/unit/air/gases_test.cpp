@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "air/gas_intervals.h"
 #include "support/message_of.h"
 
 namespace suite::gases_test {
@@ -17,11 +18,15 @@ using testing::HasSubstr;
 // Every band has the same absorbers, which the test gives.
 struct Given final : GasProvider {
   std::vector<GasPoints> all;
+  mutable int asked = 0;
   double low_um() const override { return 1; }
   double high_um() const override { return 10; }
   std::string note() const override { return "given by a test"; }
   std::vector<Band> bands(double low_cm, double high_cm) const override { return {{low_cm, high_cm, 0}}; }
-  std::vector<GasPoints> absorbers(const Band&, std::span<const AirLevel>) const override { return all; }
+  std::vector<GasPoints> absorbers(const Band&, std::span<const AirLevel>) const override {
+    ++asked;
+    return all;
+  }
 };
 
 std::vector<AirLevel> uniform(size_t count, double top) {
@@ -161,6 +166,51 @@ TEST(Gases, BuiltinContinuumInTheOtherForm) {
     EXPECT_NEAR(same[1] / own[1], 1, 1e-3 + field) << v;
     EXPECT_NEAR(same[2] / own[2], 1, 1e-3 + 1.01 * field) << v;
   }
+}
+
+TEST(GasIntervals, are_the_points_of_the_interval_computed_once) {
+  const auto given = std::make_shared<Given>();
+  const std::vector<AirLevel> levels = uniform(3, 1e4);
+  given->all = {points({0.5, 0.5}, {1e-5, 1e-3}, {1, 0.5, 0.25})};
+  GasIntervals intervals(given, levels, {}, 2);
+  const GasPoints straight = gas_points(*given, levels, 2, 3);
+  given->asked = 0;
+  for (int times = 0; times < 3; ++times) {
+    const auto found = intervals.points(2, 3);
+    EXPECT_EQ(found->weight, straight.weight);
+    EXPECT_EQ(found->absorption, straight.absorption);
+  }
+  EXPECT_EQ(given->asked, 1);
+  // Beyond those that are kept it computes each time.
+  intervals.points(3, 4), intervals.points(4, 5), intervals.points(4, 5);
+  EXPECT_EQ(given->asked, 4);
+  EXPECT_EQ(intervals.kept(), 2u);
+}
+
+TEST(GasIntervals, are_shared_by_the_same_air_alone) {
+  const auto given = std::make_shared<Given>(), other = std::make_shared<Given>();
+  std::vector<AirLevel> levels = uniform(3, 1e4);
+  const auto shared = shared_gas_intervals(given, levels, {});
+  EXPECT_EQ(shared_gas_intervals(given, levels, {}), shared);
+  EXPECT_NE(shared_gas_intervals(other, levels, {}), shared);
+  EXPECT_NE(shared_gas_intervals(given, levels, {.most = 2}), shared);
+  EXPECT_NE(shared_gas_intervals(given, levels, {.thin = 0.03}), shared);
+  EXPECT_NE(shared_gas_intervals(given, levels, {.error = 0.003}), shared);
+  const std::vector<AirLevel> as_given = levels;
+  const auto differs = [&] {
+    const bool other_air = !shared_gas_intervals(given, as_given, {})->are_of(given.get(), levels, {});
+    levels = as_given;
+    return other_air;
+  };
+  levels[1].height += 1;
+  EXPECT_TRUE(differs());
+  levels[1].pressure += 1;
+  EXPECT_TRUE(differs());
+  levels[1].temperature += 1;
+  EXPECT_TRUE(differs());
+  levels[1].fraction.back() += 1e-9;
+  EXPECT_TRUE(differs());
+  EXPECT_FALSE(differs());
 }
 
 }  // namespace
