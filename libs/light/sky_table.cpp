@@ -76,16 +76,13 @@ void SkyTable::fill(size_t index, size_t row) const {
   }
 }
 
-const float* SkyTable::floor(size_t index) const {
-  std::call_once(floors_[index].once, [&] {
-    floors_[index].table.resize(kRows * columns_ * bins_);
-    isolated([&] {
-      parallel_for(0, kRows, 1, [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) fill(index, row);
-      });
-    });
+void SkyTable::make_row(size_t floor, size_t row) const {
+  Floor& of = floors_[floor];
+  std::call_once(of.once, [&] { of.table.resize(kRows * columns_ * bins_); });
+  std::call_once(of.row_once[row], [&] {
+    fill(floor, row);
+    of.made[row].store(true, std::memory_order_release);
   });
-  return floors_[index].table.data();
 }
 
 inline double SkyTable::column(double azimuth) const {
@@ -117,9 +114,8 @@ void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
   const float* rows[8];
   float share[8];
   const auto take = [&](size_t index, float part, size_t first) {
-    const float *table = floor(index), *a = table + (r * columns_ + c) * bins_,
-                *b = table + (r * columns_ + next) * bins_;
-    const float* const corners[4] = {a, b, a + columns_ * bins_, b + columns_ * bins_};
+    const float *upper = row(index, r), *lower = row(index, r + 1);
+    const float* const corners[4] = {upper + c * bins_, upper + next * bins_, lower + c * bins_, lower + next * bins_};
     for (size_t i = 0; i < 4; ++i) rows[first + i] = corners[i], share[first + i] = part * weight[i];
   };
   if (rise < kSame || rise > 1 - kSame) {
@@ -143,12 +139,12 @@ const float* SkyTable::drawn(double height, Dir d) const {
     constexpr uint64_t kMost = (1u << 21) - 1;
     return static_cast<float>(by_chance >> (21 * number) & kMost) < share * static_cast<float>(kMost + 1);
   };
-  const float* const row =
-      floor(below(0, rise) ? low + 1 : low) + ((below(1, v) ? r + 1 : r) * columns_ + (below(2, u) ? next : c)) * bins_;
+  const float* const at =
+      row(below(0, rise) ? low + 1 : low, below(1, v) ? r + 1 : r) + (below(2, u) ? next : c) * bins_;
   // Read when the light is known to arrive, somewhere in megabytes.
   constexpr size_t kLine = 64 / sizeof(float), kAhead = 16;
-  for (size_t i = 0; i < std::min(bins_, kAhead * kLine); i += kLine) __builtin_prefetch(row + i);
-  return row;
+  for (size_t i = 0; i < std::min(bins_, kAhead * kLine); i += kLine) __builtin_prefetch(at + i);
+  return at;
 }
 
 void SkyTable::make_light() {
@@ -177,7 +173,12 @@ const SkyThroughWater& SkyTable::through_water(std::span<const size_t> knots) co
 // weight of the zenith angle's cosine.
 SkySpec SkyTable::weights(std::span<const size_t> bins, const std::function<double(double)>& weight) const {
   const auto ground = static_cast<size_t>(-kLowest / step_);
-  const auto at = [&](size_t row, size_t column) { return floor(ground) + (row * columns_ + column) * bins_; };
+  isolated([&] {
+    parallel_for(0, kRows, 1, [&](size_t begin, size_t end) {
+      for (size_t r = begin; r < end; ++r) row(ground, r);
+    });
+  });
+  const auto at = [&](size_t r, size_t column) { return row(ground, r) + column * bins_; };
   const auto weight_of = [&](size_t row) {
     return weight(std::max(0.0, std::cos(static_cast<double>(row) * kPi / 180)));
   };

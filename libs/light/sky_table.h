@@ -1,10 +1,12 @@
 // Radiance of the air over zenith angle and azimuth, tabulated for every bin at even steps of height: the sky over a
-// place, with the light that nodes ask for in it, or what lies between a place and a view from far above. Tables of
-// heights are made when a place first needs them.
+// place, with the light that nodes ask for in it, or what lies between a place and a view from far above. Each zenith
+// angle of each height is made when it is first needed: a satellite looks down one or two.
 //
 // Assumes: radiance that changes little over a degree of zenith angle and 2.5 degrees of azimuth; nothing is tabulated
 // below the horizon. Where there is one plane of symmetry (a single sun) half of the azimuths are made.
 #pragma once
+#include <array>
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -47,12 +49,20 @@ class SkyTable {
   static constexpr double kLowest = -6000, kHighest = 12000;  // m
   static constexpr size_t kRows = 91;                         // nodes of zenith angle, 0 to 90 degrees
   struct Floor {
-    std::once_flag once;
+    std::once_flag once;       // of the memory
     std::vector<float> table;  // [row][column][bin]
+    std::array<std::once_flag, kRows> row_once;
+    std::array<std::atomic<bool>, kRows> made{};
   };
   // Column of an azimuth (rad), as a number with a fraction.
   double column(double azimuth) const;
-  const float* floor(size_t index) const;
+  // [column][bin] of a floor.
+  const float* row(size_t floor, size_t row) const {
+    const Floor& of = floors_[floor];
+    if (!of.made[row].load(std::memory_order_acquire)) make_row(floor, row);
+    return of.table.data() + row * columns_ * bins_;
+  }
+  void make_row(size_t floor, size_t row) const;
   // Between which rows, columns and floors a place lies: the first ones, and how far it is to the second ones.
   struct Place {
     size_t row, column, next, floor;

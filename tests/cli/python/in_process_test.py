@@ -4,6 +4,7 @@ import math
 import shutil
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 from ctypes import byref
@@ -27,11 +28,13 @@ def as_programs_do(theta_deg, phi_deg):
 
 
 class Fitted(Case):
-    def setUp(self):
-        super().setUp()
-        self.path = self.folder / "satin.sqt"
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.kept.cleanup)
+        cls.path = Path(cls.kept.name) / "satin.sqt"
         run("sqt-fit", "-q", "--model", "ward:diffuse=0.2,specular=0.1,roughness=0.2", "--views", 9, "--order", 6,
-            "--min-peak", 0, "-o", self.path)
+            "--min-peak", 0, "-o", cls.path)
 
     def test_values_are_those_of_sqt_inspect_to_the_last_bit(self):
         run("sqt-inspect", self.path, "-q", "--export", self.folder / "t.csv")
