@@ -11,6 +11,7 @@ WATER_M = 106.0                                    # of the raster's heights: th
 RIVER = [(-4000, -330), (-1500, -250), (-1000, -150), (-625, -50), (-125, 0), (125, 12), (375, 50), (550, 100), (700, 175), (950, 200), (1400, 290)]
 RIVER_HALF, RIVER_DEPTH = 38.0, 3.5
 LAKE, LAKE_RADIUS, LAKE_DEPTH = (-800.0, -420.0), 110.0, 6.0
+BANK = 120.0                                       # m beside the water that lie at least 3 m above it
 TOWN = (-520.0, -340.0, 280.0, -70.0)              # level ground, and its height
 TOWN_M = 6.0
 
@@ -54,9 +55,12 @@ def smoothed(rows, times):
     return rows
 
 
-def distance_to_line(points, x, y):
-    best = 1e30
+def distance_to_line(points, x, y, farthest=math.inf):
+    """Of a place; those beyond `farthest` may be told as infinite."""
+    best = math.inf
     for (ax, ay), (bx, by) in zip(points, points[1:]):
+        if y < min(ay, by) - farthest or y > max(ay, by) + farthest or x < min(ax, bx) - farthest or x > max(ax, bx) + farthest:
+            continue
         dx, dy = bx - ax, by - ay
         t = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)))
         best = min(best, (x - ax - t * dx) ** 2 + (y - ay - t * dy) ** 2)
@@ -92,11 +96,11 @@ class Ground:
         x0, y0, x1, y1 = TOWN
         out = math.hypot(max(x0 - x, x - x1, 0), max(y0 - y, y - y1, 0))
         h = TOWN_M + (max(h, 3.0) - TOWN_M) * ramp(out / 120)
-        for d, half, depth in ((distance_to_line(RIVER, x, y), RIVER_HALF, RIVER_DEPTH),
+        for d, half, depth in ((distance_to_line(RIVER, x, y, RIVER_HALF + BANK), RIVER_HALF, RIVER_DEPTH),
                                (math.hypot(x - LAKE[0], y - LAKE[1]), LAKE_RADIUS, LAKE_DEPTH)):
             if d < half:
                 h = -depth * (1 - (d / half) ** 2)
-            elif d < half + 120:
+            elif d < half + BANK:
                 h = max(h, 3.0) * ramp((d - half) / 30) if d < half + 30 else max(h, 3.0)
         return h
 
@@ -185,12 +189,10 @@ class Cover:
 
     def _paint(self, x0, y0, x1, y1, kind, over=None):
         i0, i1 = max(0, round((x0 - WEST) / PIXEL)), max(0, min(self.columns, round((x1 - WEST) / PIXEL)))
+        painted = bytes(kind if over is None or k in over else k for k in range(256))
         for j in range(max(0, round((NORTH - y1) / PIXEL)), min(self.rows, round((NORTH - y0) / PIXEL))):
             row = self.map[j]
-            if over is None:
-                row[i0:i1] = bytes([kind]) * (i1 - i0)
-            else:
-                row[i0:i1] = row[i0:i1].translate(bytes(kind if k in over else k for k in range(256)))
+            row[i0:i1] = row[i0:i1].translate(painted)
 
     def _stroke(self, line, half, kind):
         for (ax, ay), (bx, by) in zip(line, line[1:]):
