@@ -38,16 +38,15 @@ struct LeafGrid {
   std::vector<float> profile;  // log2 of the profile along the normal there, [channel][point]; empty: not asked yet
   void fill(const LeafPart& part, int n) {
     side = n;
-    x.clear(), y.clear(), z.clear(), dx.clear(), dy.clear(), profile.clear();
+    const size_t all = whole_lanes(points());
+    for (std::vector<double>* v : {&x, &y, &z}) v->assign(all, 0.0);
+    directions_in(part.id, n, x.data(), y.data(), z.data());
+    dx.assign(all, 0.0f), dy.assign(all, 0.0f), profile.clear();
     for (int k = 0; k < n * n; ++k) {
       const double ux = (k % n + 0.5) / n, uy = (k / n + 0.5) / n;
-      const Dir d = direction_in(part.id, {ux, uy});
-      x.push_back(d.x), y.push_back(d.y), z.push_back(d.z);
-      dx.push_back(static_cast<float>(part.x + ux * part.width - 0.5));
-      dy.push_back(static_cast<float>(part.y + uy * part.width - 0.5));
+      dx[static_cast<size_t>(k)] = static_cast<float>(part.x + ux * part.width - 0.5);
+      dy[static_cast<size_t>(k)] = static_cast<float>(part.y + uy * part.width - 0.5);
     }
-    dx.resize(whole_lanes(dx.size())), dy.resize(dx.size());
-    x.resize(dx.size()), y.resize(dx.size()), z.resize(dx.size());
   }
   size_t points() const { return static_cast<size_t>(side * side); }
   void ask(const PolarProfile& polar, size_t sheet, size_t channels) {
