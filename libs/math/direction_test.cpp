@@ -15,11 +15,22 @@ struct Cell {
   int side;  // +1 upper, -1 lower
   double x0, x1, y0, y1;
   double solid_angle() const { return 2 * kPi * (x1 - x0) * (y1 - y0); }
-  Dir at(double u, double v) const {
-    const double drop = y0 + (y1 - y0) * v, phi = 2 * kPi * (x0 + (x1 - x0) * u), r = std::sqrt(drop * (2 - drop));
-    return {r * std::cos(phi), r * std::sin(phi), side * (1 - drop)};
-  }
 };
+
+// Integral of f over a cell by 3 x 3 Gauss points.
+double gauss(const std::function<double(Dir)>& f, const Cell& c) {
+  static constexpr double node[3] = {0.11270166537925831, 0.5, 0.88729833462074169},
+                          weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  double drop[3], radius[3];
+  for (int j = 0; j < 3; ++j) drop[j] = c.y0 + (c.y1 - c.y0) * node[j], radius[j] = std::sqrt(drop[j] * (2 - drop[j]));
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double phi = 2 * kPi * (c.x0 + (c.x1 - c.x0) * node[i]), x = std::cos(phi), y = std::sin(phi);
+    for (int j = 0; j < 3; ++j)
+      sum += weight[i] * weight[j] * f({radius[j] * x, radius[j] * y, c.side * (1 - drop[j])});
+  }
+  return sum * c.solid_angle();
+}
 
 struct Point {
   int side;
@@ -102,22 +113,17 @@ class Cells {
 // every piece: densities that jump (cells) leave errors of either sign, which average out over their many pieces.
 double integrate(const std::function<double(Dir)>& f, const Cell& cell, const std::vector<Point>& pilot,
                  double tolerance, int depth, int blind = 0) {
-  static constexpr double node[3] = {0.11270166537925831, 0.5, 0.88729833462074169},
-                          weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-  auto gauss = [&](const Cell& c) {
-    double sum = 0;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) sum += weight[i] * weight[j] * f(c.at(node[i], node[j]));
-    return sum * c.solid_angle();
-  };
   const bool guided = pilot.size() > 2 && depth < 100;
   const bool split_x = guided ? splits_x(cell, pilot, depth) : depth % 2 == 0;
   const auto [low, high] = halves(cell, split_x);
   if (!guided) {
     // Compare with the halves both ways: one way alone is blind to a kink along the other.
-    const auto [low2, high2] = halves(cell, !split_x);
-    const double whole = gauss(cell), one = gauss(low) + gauss(high), two = gauss(low2) + gauss(high2);
-    if (blind >= 14 || std::max(std::fabs(one - whole), std::fabs(two - whole)) < tolerance) return one;
+    const double whole = gauss(f, cell), one = gauss(f, low) + gauss(f, high);
+    const auto agree_across = [&] {
+      const auto [low2, high2] = halves(cell, !split_x);
+      return std::fabs(gauss(f, low2) + gauss(f, high2) - whole) < tolerance;
+    };
+    if (blind >= 14 || (std::fabs(one - whole) < tolerance && agree_across())) return one;
   }
   std::vector<Point> below, above;
   for (const Point& p : pilot) ((split_x ? p.x < low.x1 : p.y < low.y1) ? below : above).push_back(p);

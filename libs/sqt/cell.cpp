@@ -145,6 +145,26 @@ CellId cell_of(FacePoint p, int order) {
   return cell_at(order, {p.face, static_cast<uint32_t>(p.x * n), static_cast<uint32_t>(p.y * n)});
 }
 
+void directions_in(CellId cell, int side, double* x, double* y, double* z) {
+  struct Turned {
+    double eighths = NAN, cosine = 0, sine = 0;
+  };
+  std::array<Turned, 63> diagonals;  // points of one have nearly, in the equatorial belt mostly exactly, one azimuth
+  const CellXY c = xy_of(cell);
+  const double n = static_cast<double>(1u << cell.order());
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const Cylinder at = cylinder({c.face, (c.x + (i + 0.5) / side) / n, (c.y + (j + 0.5) / side) / n});
+      Turned& turned = diagonals[static_cast<size_t>(i - j + side - 1)];
+      if (turned.eighths != at.eighths) {
+        const double phi = (kPi / 4) * at.eighths;
+        turned = {at.eighths, std::cos(phi), std::sin(phi)};
+      }
+      const auto k = static_cast<size_t>(j * side + i);
+      x[k] = at.s * turned.cosine, y[k] = at.s * turned.sine, z[k] = at.z;
+    }
+}
+
 FacePoint point_in(CellId cell, Vec2 u) {
   const CellXY c = xy_of(cell);
   const double n = static_cast<double>(1u << cell.order());

@@ -61,6 +61,9 @@ inline CellId cell_of(Dir d, int order) { return cell_of(face_point(d), order); 
 // The point of the unit square (u.x, u.y) inside the cell; uniform in, uniform out.
 FacePoint point_in(CellId cell, Vec2 u);
 inline Dir direction_in(CellId cell, Vec2 u) { return direction(point_in(cell, u)); }
+// direction_in at ((i + 0.5) / side, (j + 0.5) / side) for all i, j < side, at [j * side + i] of x, y, z: the same
+// bits, with sines and cosines of an azimuth once for all points of the grid that share it. side: 1 to 32.
+void directions_in(CellId cell, int side, double* x, double* y, double* z);
 inline Dir center_of(CellId cell) { return direction_in(cell, {0.5, 0.5}); }
 
 // The four cells of the same order across the edges: -x, +x, -y, +y; or one of them (edge 0..3).

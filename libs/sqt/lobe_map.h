@@ -13,6 +13,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "math/vec.h"
 
@@ -47,6 +48,14 @@ class LobeMap {
     if (!reflects()) return d.z;
     const double along = dot(d, out_);
     return 2 * (d.z > 0 ? along : std::max(along, 0.0)) * d.z - out_.z;
+  }
+  // Cosine and stretch of several directions at once, each a vector of doubles; the same bits.
+  template <class Lanes>
+  std::pair<Lanes, Lanes> cosine_and_stretch(Lanes x, Lanes y, Lanes z) const {
+    if (!reflects()) return {z, Lanes{} + 1};
+    const Lanes along = x * out_.x + y * out_.y + z * out_.z, none{};
+    const Lanes seen = z > 0 ? along : (along > 0 ? along : none);
+    return {2 * seen * z - out_.z, 4 * (along < 0 ? -along : along)};
   }
 
  private:

@@ -26,28 +26,32 @@ struct LeafPart {
 };
 
 constexpr size_t kLanes = 8;
+using FourDoubles = double __attribute__((vector_size(32)));
+using FourFloats = float __attribute__((vector_size(16)));
 size_t whole_lanes(size_t points) { return (points + kLanes - 1) / kLanes * kLanes; }
 
 // Points of a part on a square grid, and where they are in the leaf; offsets are filled up to whole lanes.
 struct LeafGrid {
   int side = 0;
-  std::vector<Dir> direction;
+  std::vector<double> x, y, z;  // directions, filled up like the offsets
   std::vector<float> dx, dy;
   std::vector<float> profile;  // log2 of the profile along the normal there, [channel][point]; empty: not asked yet
   void fill(const LeafPart& part, int n) {
     side = n;
-    direction.clear(), dx.clear(), dy.clear(), profile.clear();
+    const size_t all = whole_lanes(points());
+    for (std::vector<double>* v : {&x, &y, &z}) v->assign(all, 0.0);
+    directions_in(part.id, n, x.data(), y.data(), z.data());
+    dx.assign(all, 0.0f), dy.assign(all, 0.0f), profile.clear();
     for (int k = 0; k < n * n; ++k) {
       const double ux = (k % n + 0.5) / n, uy = (k / n + 0.5) / n;
-      direction.push_back(direction_in(part.id, {ux, uy}));
-      dx.push_back(static_cast<float>(part.x + ux * part.width - 0.5));
-      dy.push_back(static_cast<float>(part.y + uy * part.width - 0.5));
+      dx[static_cast<size_t>(k)] = static_cast<float>(part.x + ux * part.width - 0.5);
+      dy[static_cast<size_t>(k)] = static_cast<float>(part.y + uy * part.width - 0.5);
     }
-    dx.resize(whole_lanes(dx.size())), dy.resize(dx.size());
   }
+  size_t points() const { return static_cast<size_t>(side * side); }
   void ask(const PolarProfile& polar, size_t sheet, size_t channels) {
     std::vector<PolarProfile::At> at;
-    for (const Dir& d : direction) at.push_back(PolarProfile::locate(1 - d.z));
+    for (size_t k = 0; k < points(); ++k) at.push_back(PolarProfile::locate(1 - z[k]));
     profile.assign(channels * dx.size(), 0);
     for (size_t c = 0; c < channels; ++c)
       for (size_t k = 0; k < at.size(); ++k) profile[c * dx.size() + k] = polar.log2(sheet, at[k], c);
@@ -127,37 +131,41 @@ class LeafIntegral {
   }
   // What the points count for; false: nothing.
   bool weigh(const LeafGrid& grid, const LobeMap& map) {
-    const size_t points = grid.direction.size();
-    weight_.assign(grid.dx.size(), 0);
-    bool any = false;
-    for (size_t k = 0; k < points; ++k) {
-      const Dir d = grid.direction[k];
-      const double cosine = map.cosine(d);
-      const bool counts = !layout_.upper_only || cosine > 0;
-      if (counts) weight_[k] = static_cast<float>(map.stretch(d) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0));
-      any |= counts;
+    weight_.resize(grid.dx.size());
+    FourDoubles any{};
+    for (size_t k = 0; k < grid.x.size(); k += 4) {
+      const auto [cosine, stretch] = map.cosine_and_stretch(
+          load<FourDoubles>(&grid.x[k]), load<FourDoubles>(&grid.y[k]), load<FourDoubles>(&grid.z[k]));
+      FourDoubles weight = layout_.cosine_weighted ? stretch * (cosine < 0 ? -cosine : cosine) : stretch;
+      if (layout_.upper_only) weight = cosine > 0 ? weight : FourDoubles{};
+      any += weight;
+      store(&weight_[k], __builtin_convertvector(weight, FourFloats));
     }
-    return any;
+    // What fills up the lanes is not summed.
+    return any[0] + any[1] + any[2] + any[3] > 0;
   }
   // Sum of weight times 2^log2(k) over the points, in their order; log2 gives eight.
-  float sum_of(const auto& log2) const {
+  float sum_of(size_t points, const auto& log2) const {
     float sum = 0;
-    for (size_t k = 0; k < weight_.size(); k += kLanes) {
+    for (size_t k = 0; k < points; k += kLanes) {
       const EightFloats f = load<EightFloats>(&weight_[k]) * portable_exp2(log2(k));
-      for (size_t i = 0; i < kLanes; ++i) sum += f[i];
+      if (points - k >= kLanes)
+        for (size_t i = 0; i < kLanes; ++i) sum += f[i];
+      else
+        for (size_t i = 0; i < points - k; ++i) sum += f[i];
     }
     return sum;
   }
   // Between the profile along the normal and the slice above.
   void add_polar(const LeafGrid& grid, double width, double area, const TotalView& view, const int16_t* leaf,
                  double* integral) const {
-    const size_t views = layout_.views(), points = grid.direction.size();
+    const size_t views = layout_.views(), points = grid.points();
     const float to_slope = view.w1 * scale_.unit() * static_cast<float>(width / grid.side);
     for (size_t c = 0; c < layout_.channels; ++c) {
       const int16_t* b = leaf + (c * views + view.high) * kStride;
       const float value = b[0], gx = b[1], gy = b[2];
       const float* const profile = &grid.profile[c * grid.dx.size()];
-      const float sum = sum_of([&](size_t k) {
+      const float sum = sum_of(points, [&](size_t k) {
         const EightFloats number = value + load<EightFloats>(&grid.dx[k]) * gx + load<EightFloats>(&grid.dy[k]) * gy;
         return view.w0 * load<EightFloats>(profile + k) +
                view.w1 * (static_cast<float>(scale_.offset) + number * scale_.unit());
@@ -168,7 +176,7 @@ class LeafIntegral {
   }
   void add(const LeafGrid& grid, double width, double area, const TotalView& view, const int16_t* leaf,
            double* integral) const {
-    const size_t views = layout_.views(), channels = layout_.channels, points = grid.direction.size();
+    const size_t views = layout_.views(), channels = layout_.channels, points = grid.points();
     const float spacing = static_cast<float>(width / grid.side);
     for (size_t c = 0; c < channels; ++c) {
       const int16_t* a = leaf + (c * views + view.low) * kStride;
@@ -176,8 +184,9 @@ class LeafIntegral {
       const float unit = scale_.unit();
       const float v = scale_.value(view.w0 * a[0] + view.w1 * b[0]), gx = unit * (view.w0 * a[1] + view.w1 * b[1]),
                   gy = unit * (view.w0 * a[2] + view.w1 * b[2]);
-      const float sum = sum_of(
-          [&](size_t k) { return v + load<EightFloats>(&grid.dx[k]) * gx + load<EightFloats>(&grid.dy[k]) * gy; });
+      const float sum = sum_of(points, [&](size_t k) {
+        return v + load<EightFloats>(&grid.dx[k]) * gx + load<EightFloats>(&grid.dy[k]) * gy;
+      });
       integral[c] += static_cast<double>(sum * mean_exp2(gx * spacing) * mean_exp2(gy * spacing)) * area /
                      static_cast<double>(points);
     }

@@ -67,8 +67,7 @@ void DirectionalTable::at(Dir out, std::span<float> v) const {
   }
 }
 
-float DirectionalTable::at(Dir out, size_t index) const {
-  const Place p = locate(out);
+float DirectionalTable::at(const Place& p, size_t index) const {
   double sum = 0;
   for (int k = 0; k < p.count; ++k) sum += p.weight[k] * values_[p.entry[k] * width_ + index];
   return static_cast<float>(sum);

@@ -22,15 +22,18 @@ class DirectionalTable {
                    const std::function<void(Dir, std::span<float>)>& fill);
   // Cubic (Catmull-Rom) along rows, linear along azimuth; out.z > 0. out_values.size() == width.
   void at(Dir out, std::span<float> out_values) const;
-  float at(Dir out, size_t index) const;
+  float at(Dir out, size_t index) const { return at(locate(out), index); }
 
- private:
+  // Where a direction lies, for those who ask for several numbers of one direction.
   struct Place {
     size_t entry[8];
     double weight[8];
     int count;
   };
   Place locate(Dir out) const;
+  float at(const Place& place, size_t index) const;
+
+ private:
   double coordinate(double theta, double roughness) const;  // of the rows, 0 to 1
   double ax_ = 1, ay_ = 1;
   size_t rows_ = 0, columns_ = 0, width_ = 0;

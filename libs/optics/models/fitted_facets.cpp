@@ -1,5 +1,6 @@
 #include "optics/models/fitted_facets.h"
 
+#include <array>
 #include <cmath>
 
 #include "math/warps.h"
@@ -63,6 +64,11 @@ FittedFacets::FittedFacets(const FacetRule& rule, const ModelSpec& spec, const S
 // parts of s, 64 azimuths of half the circle, the function being even.
 void FittedFacets::integrate(Dir out, std::span<float> W) const {
   constexpr int kParts = 24, kAround = 64;
+  std::array<Vec2, kAround> around;
+  for (int a = 0; a < kAround; ++a) {
+    const double phi = kPi * (a + 0.5) / kAround;
+    around[static_cast<size_t>(a)] = {std::cos(phi), std::sin(phi)};
+  }
   std::vector<double> sum(W.size());
   for (int part = 0; part < kParts; ++part)
     for (int g = 0; g < 4; ++g) {
@@ -70,9 +76,8 @@ void FittedFacets::integrate(Dir out, std::span<float> W) const {
                    cosine = 1 / std::sqrt(1 + tangent * tangent);
       const double solid = cosine * cosine * cosine * tangent * rule_.sigma / ((1 - s) * (1 - s)) * kWeight[g] /
                            kParts * (2 * kPi / kAround);
-      for (int a = 0; a < kAround; ++a) {
-        const double phi = kPi * (a + 0.5) / kAround;
-        const Dir h{tangent * cosine * std::cos(phi), tangent * cosine * std::sin(phi), cosine};
+      for (const Vec2 turned : around) {
+        const Dir h{tangent * cosine * turned.x, tangent * cosine * turned.y, cosine};
         const double cos_beta = dot(out, h);
         const Dir in = 2 * cos_beta * h - out;
         if (!(cos_beta > 0 && in.z > 0)) continue;
@@ -131,9 +136,9 @@ void FittedFacets::total(Dir out, std::span<float> W) const {
 }
 
 // Facets with long tails are never drawn alone: their density falls faster than they do.
-double FittedFacets::facet_share(Dir out, size_t knot) const {
+double FittedFacets::facet_share(Dir out, const DirectionalTable::Place& place, size_t knot) const {
   const size_t i = knots_[knot];
-  const double facets = facets_.at(out, i), rest = body_total(out, i);
+  const double facets = facets_.at(place, i), rest = body_total(out, i);
   const bool alone = rule_.slopes == Slopes::gaussian && rule_.shadows == FacetRule::Shadows::cavity;
   if (alone && rest == 0) return 1;
   return facets + rest > 0 ? std::clamp(facets / (facets + rest), 0.1, alone ? 0.95 : 0.7) : 0.1;
@@ -154,7 +159,7 @@ double FittedFacets::slope_density(double tangent2, double cosine) const {
 std::optional<ScatterModel::Sample> FittedFacets::sample(Dir out, Vec2 u, double lobe_u, int knot) const {
   if (out.z == 0) return std::nullopt;
   const Dir o = seen_from(out);
-  const bool facet = lobe_u < facet_share(o, static_cast<size_t>(knot));
+  const bool facet = lobe_u < facet_share(o, facets_.locate(o), static_cast<size_t>(knot));
   Dir in;
   if (facet) {
     const double t =
@@ -175,8 +180,9 @@ void FittedFacets::pdf(Dir out, Dir in, std::span<float> p) const {
   const Vec3 h = o + i;
   const double size = length(h), cosine = h.z / size, tangent2 = (h.x * h.x + h.y * h.y) / (h.z * h.z);
   const double facet = slope_density(tangent2, cosine) / (4 * dot(o, h) / size), base = i.z / kPi;
+  const DirectionalTable::Place place = facets_.locate(o);
   for (size_t k = 0; k < p.size(); ++k) {
-    const double share = facet_share(o, k);
+    const double share = facet_share(o, place, k);
     p[k] = finite_float(share * facet + (1 - share) * base);
   }
 }

@@ -37,7 +37,7 @@ class FittedFacets final : public ScatterModel {
   struct Pair;  // of directions: what does not depend on the wavelength
   double body(size_t i) const { return diffuse_[i] + volume_[i]; }
   double body_total(Dir out, size_t i) const;
-  double facet_share(Dir out, size_t knot) const;
+  double facet_share(Dir out, const DirectionalTable::Place& place, size_t knot) const;
   Dir seen_from(Dir out) const;
   double slope_density(double tangent2, double cosine) const;  // of sampled half vectors, 1/sr
   void integrate(Dir out, std::span<float> W) const;

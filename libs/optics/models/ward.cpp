@@ -45,7 +45,7 @@ class Ward final : public ScatterModel {
   std::optional<Sample> sample(Dir out, Vec2 u, double lobe_u, int knot) const override {
     if (out.z == 0) return std::nullopt;
     const Dir o = up(out);
-    const bool gloss = lobe_u < gloss_probability(o, static_cast<size_t>(knot));
+    const bool gloss = lobe_u < gloss_probability(albedo_.at(o), static_cast<size_t>(knot));
     Dir in;
     if (gloss) {
       const double r = std::sqrt(-std::log1p(-u.x)), turn = 2 * kPi * u.y;
@@ -62,9 +62,9 @@ class Ward final : public ScatterModel {
     if (!same_side(out, in)) return zero(p);
     const Half h(*this, out, in);
     const double gloss = h.gauss * h.length2 / (2 * kPi * ax_ * ay_ * h.z * h.z * h.z), base = std::fabs(in.z) / kPi;
-    const Dir o = up(out);
+    const double albedo = albedo_.at(up(out));
     for (size_t k = 0; k < p.size(); ++k) {
-      const double share = gloss_probability(o, k);
+      const double share = gloss_probability(albedo, k);
       p[k] = finite_float(share * gloss + (1 - share) * base);
     }
   }
@@ -83,8 +83,9 @@ class Ward final : public ScatterModel {
       gauss = std::exp(-(x * x + y * y) / (z * z));
     }
   };
-  double gloss_probability(Dir o, size_t knot) const {
-    const double s = specular_[knots_[knot]] * albedo_.at(o), d = diffuse_[knots_[knot]];
+  // albedo: of the lobe, seen from the outgoing direction.
+  double gloss_probability(double albedo, size_t knot) const {
+    const double s = specular_[knots_[knot]] * albedo, d = diffuse_[knots_[knot]];
     return s + d > 0 ? s / (s + d) : 0;
   }
 

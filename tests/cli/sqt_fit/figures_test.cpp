@@ -48,11 +48,14 @@ struct Bright {
 Bright brightest(const Picture& p, Vec2 c) {
   Bright b;
   double best = 1e9;
+  static const std::vector<Rgb> scale = [] {
+    std::vector<Rgb> colours;
+    for (int k = 40; k >= 0; --k) colours.push_back(viridis(k / 40.0));
+    return colours;
+  }();
   auto off_scale = [&](int x, int y) {
-    for (int k = 40; k >= 0; --k) {
-      const Rgb s = viridis(k / 40.0);
-      if (p.near(x, y, s, 12)) return (40 - k) / 40.0;
-    }
+    for (size_t k = 0; k < scale.size(); ++k)
+      if (p.near(x, y, scale[k], 12)) return static_cast<double>(k) / 40.0;
     return 2.0;
   };
   for (int pass = 0; pass < 2; ++pass)

@@ -112,7 +112,7 @@ TEST_F(FuzzScene, GeoTiff) {
 }
 
 TEST_F(FuzzScene, Png) {
-  test::fuzz(read_bytes(SUITE_SOURCE_DIR "/sample_scenes/calibration_range/landcover.png"),
+  test::fuzz(read_bytes(SUITE_SOURCE_DIR "/sample_scenes/shallow_bay/kinds.png"),
              as_file("m.png", [](const std::string& path) { read_raster(path, 1 << 22); }), 4);
 }
 

@@ -27,7 +27,7 @@ struct Split {
 Split measure(const Psd& psd, double exposure, uint64_t seed) {
   std::array<AxisJitter, 6> axes;
   axes.fill(coloured(psd));
-  const Jitter jitter(axes, seed, 128);
+  const Jitter jitter(axes, seed, 64);
   RunningStats within, means[6];
   Pcg32 rng(seed + 1);
   // Evenly spaced samples, closer than half the shortest period, make a sum over the exposure as good as an integral.

@@ -63,8 +63,8 @@ std::shared_ptr<const Scene> load(const std::string& path, std::shared_ptr<Spill
 }
 
 // Rays that jump from town to town, from many threads; every fourth runs along all towns.
-std::vector<Hit> shoot(const Tracer& tracer, size_t threads_at_work) {
-  std::vector<Hit> hits(6000);
+std::vector<Hit> shoot(const Tracer& tracer, size_t threads_at_work, size_t count = 6000) {
+  std::vector<Hit> hits(count);
   std::atomic<size_t> next = 0;
   on_threads(static_cast<int>(threads_at_work), [&] {
     const FlushDenormals flush;
@@ -153,11 +153,12 @@ TEST(TileMemory, TilesAreNotBuiltAgainForRaysThatMissTheirHulls) {
 TEST(TileMemory, WhatIsLargerThanTheLimitIsToldOnceAndHeld) {
   TempFolder folder;
   write_scene(towns(), {}, folder / "towns.h5");
-  const std::vector<Hit> free = shoot(Tracer(load(folder / "towns.h5")), 1);
+  constexpr size_t kRays = 1500;  // in groups of 50, of which each needs all tiles built again
+  const std::vector<Hit> free = shoot(Tracer(load(folder / "towns.h5")), 1, kRays);
   std::vector<std::string> told;
   const Tracer tracer(load(folder / "towns.h5"), {}, {}, nullptr,
                       {4096, [&](const std::string& t) { told.push_back(t); }});
-  expect_same(shoot(tracer, 3), free);
+  expect_same(shoot(tracer, 3, kRays), free);
   ASSERT_EQ(told.size(), 1u);
   EXPECT_THAT(told[0], testing::HasSubstr("more than the 4.1 kB"));
 }

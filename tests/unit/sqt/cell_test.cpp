@@ -26,6 +26,20 @@ TEST(Cell, IndexAgreesWithReferenceAtEveryOrder) {
     }
 }
 
+TEST(Cell, GridsOfDirectionsAreThoseOfTheirPoints) {
+  for (const int side : {1, 4, 12, 16})
+    for (uint32_t i = 0; i < cell_count(3); ++i) {
+      std::vector<double> x(256), y(256), z(256);
+      const CellId cell = CellId::of(3, i);
+      directions_in(cell, side, x.data(), y.data(), z.data());
+      for (int k = 0; k < side * side; ++k) {
+        const auto n = static_cast<size_t>(k);
+        ASSERT_EQ(direction_in(cell, {(k % side + 0.5) / side, (k / side + 0.5) / side}), (Dir{x[n], y[n], z[n]}))
+            << i << ' ' << side << ' ' << k;
+      }
+    }
+}
+
 TEST(Cell, CentresAgreeWithReference) {
   for (int order = 0; order <= 6; ++order)
     for (uint32_t i = 0; i < cell_count(order); ++i) {
