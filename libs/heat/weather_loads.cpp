@@ -43,9 +43,9 @@ std::vector<float> shares(const Curve& spectrum, const SpectralState& state) {
   return out;
 }
 
-ClearSky clear_at(Dir sun) {
+ClearSpectra clear_at(Dir sun) {
   const double elevation = std::max(std::asin(std::clamp(sun.z, -1.0, 1.0)), kLowestSun);
-  return clear_sky({}, {std::cos(elevation), 0, std::sin(elevation)}, solar_irradiance());
+  return clear_spectra({}, {std::cos(elevation), 0, std::sin(elevation)}, solar_irradiance());
 }
 
 // Where the sun stands, from a table of every minute or less: within 3e-6 rad. Asked outside, its ends.
@@ -70,7 +70,7 @@ void set_spectra(SunCourse& course, bool airless) {
   for (size_t k = 0; k < course.moments.size(); ++k) {
     const Dir d = course.towards(course.moments[k]);
     if (d.z > 0) {
-      const ClearSky clear = clear_at(d);
+      const ClearSpectra clear = clear_at(d);
       course.beam.push_back(airless ? above : shares(clear.direct, state));
       const double diffuse = clear.diffuse.integral(clear.diffuse.low_um(), clear.diffuse.high_um());
       weight += diffuse, height += diffuse * d.z;
@@ -82,26 +82,38 @@ void set_spectra(SunCourse& course, bool airless) {
   course.sky = shares(clear_at({std::sqrt(1 - z * z), 0, z}).diffuse, state);
 }
 
+constexpr uint32_t kInside = 4;  // places of a part of the sky in each direction
+
+// Those of all parts, part by part.
+std::vector<Dir> places_of_sky() {
+  std::vector<Dir> places;
+  for (uint32_t r = 0; r < kSkyRings; ++r)
+    for (uint32_t c = 0; c < kSkyTurns; ++c)
+      for (uint32_t i = 0; i < kInside * kInside; ++i) {
+        const double z = (r + (i / kInside + 0.5) / kInside) / kSkyRings;
+        const double phi = 2 * kPi * (c + (i % kInside + 0.5) / kInside) / kSkyTurns, s = std::sqrt(1 - z * z);
+        places.push_back({s * std::cos(phi), s * std::sin(phi), z});
+      }
+  return places;
+}
+
 // Radiance of the sky's parts with the given irradiance of level ground.
 std::vector<float> patches(Dir sun, double direct, double diffuse, double extraterrestrial) {
   std::vector<float> out(kSkyPatches, 0.0f);
   if (!(diffuse > 0)) return out;
   const double zenith = std::min(polar_angle(sun), kPi / 2 - kLowestSun);
   const PerezSky sky(zenith, direct, diffuse, extraterrestrial, air_mass(zenith));
-  constexpr int kInside = 4;  // places of a part in each direction
+  static const std::vector<Dir> places = places_of_sky();
   double level = 0;
-  for (uint32_t r = 0; r < kSkyRings; ++r)
-    for (uint32_t c = 0; c < kSkyTurns; ++c) {
-      double sum = 0;
-      for (int i = 0; i < kInside * kInside; ++i) {
-        const double z = (r + (i / kInside + 0.5) / kInside) / kSkyRings;
-        const double phi = 2 * kPi * (c + (i % kInside + 0.5) / kInside) / kSkyTurns, s = std::sqrt(1 - z * z);
-        const Dir d{s * std::cos(phi), s * std::sin(phi), z};
-        const double radiance = sky.at(z, angle_between(d, sun));
-        sum += radiance, level += radiance * z;
-      }
-      out[r * kSkyTurns + c] = static_cast<float>(sum / (kInside * kInside));
+  for (size_t p = 0; p < kSkyPatches; ++p) {
+    double sum = 0;
+    for (size_t i = 0; i < kInside * kInside; ++i) {
+      const Dir d = places[p * kInside * kInside + i];
+      const double radiance = sky.at(d.z, angle_between(d, sun));
+      sum += radiance, level += radiance * d.z;
     }
+    out[p] = static_cast<float>(sum / (kInside * kInside));
+  }
   const double scale = diffuse / (level / (kInside * kInside) * kSkyPatch);
   for (float& v : out) v = static_cast<float>(v * scale);
   return out;

@@ -17,7 +17,10 @@ constexpr double kBentRadius = 6371e3;  // m
 class Bent {
  public:
   Bent(std::vector<double> heights, std::vector<double> refractivity, std::vector<std::vector<double>> extinction)
-      : heights_(std::move(heights)), refractivity_(std::move(refractivity)), extinction_(std::move(extinction)) {}
+      : heights_(std::move(heights)), refractivity_(std::move(refractivity)), extinction_(std::move(extinction)) {
+    for (size_t l = 0; l + 1 < heights_.size(); ++l)
+      decay_.push_back(std::log(refractivity_[l] / refractivity_[l + 1]) / (heights_[l + 1] - heights_[l]));
+  }
 
   struct Sums {
     double bending = 0;
@@ -27,12 +30,7 @@ class Bent {
   struct Index {
     double nr, fall;
   };
-  Index at(double height) const {
-    const size_t l = layer(height);
-    const double low = refractivity_[l], decay = std::log(low / refractivity_[l + 1]) / (heights_[l + 1] - heights_[l]),
-                 n = 1 + low * std::exp(-decay * (height - heights_[l]));
-    return {n * (kBentRadius + height), decay * (n - 1) / n};
-  }
+  Index at(double height) const { return at(height, layer(height)); }
   // From the lowest point of a ray up to a height.
   void add(double lowest, double height, double times, Sums& to) const {
     static constexpr double node[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363},
@@ -44,7 +42,7 @@ class Bent {
       double way = 0;
       for (int i = 0; i < 8; ++i) {
         const double u = 0.5 * (a + b) + 0.5 * (b - a) * (i % 2 ? node[i / 2] : -node[i / 2]);
-        const Index here = at(lowest + u * u);
+        const Index here = at(lowest + u * u, l);
         const double sine = constant / here.nr,
                      cosine = std::sqrt((here.nr - constant) * (here.nr + constant)) / here.nr;
         const double step = times * weight[i / 2] * (b - a) * u / cosine;  // ds, with dh = 2 u du
@@ -76,11 +74,15 @@ class Bent {
   double extinction(size_t bin, size_t l) const { return extinction_[bin][l]; }
 
  private:
+  Index at(double height, size_t l) const {
+    const double n = 1 + refractivity_[l] * std::exp(-decay_[l] * (height - heights_[l]));
+    return {n * (kBentRadius + height), decay_[l] * (n - 1) / n};
+  }
   size_t layer(double height) const {
     const auto next = std::upper_bound(heights_.begin() + 1, heights_.end() - 1, height);
     return static_cast<size_t>(next - heights_.begin()) - 1;
   }
-  std::vector<double> heights_, refractivity_;
+  std::vector<double> heights_, refractivity_, decay_;
   std::vector<std::vector<double>> extinction_;  // [bin][layer], 1/m
 };
 

@@ -28,8 +28,8 @@ inline Forward forward_refract(Vec3 d, Vec3 n, double eta) {
     f.transmittance = 4 * eta / ((1 + eta) * (1 + eta));
     return f;
   }
-  const double rs = std::sin(incident - refracted) / std::sin(incident + refracted),
-               rp = std::tan(incident - refracted) / std::tan(incident + refracted);
+  const double less = incident - refracted, more = incident + refracted;
+  const double rs = std::sin(less) / std::sin(more), rp = rs * std::cos(more) / std::cos(less);  // of the tangents
   f.transmittance = 1 - 0.5 * (rs * rs + rp * rp);
   return f;
 }
@@ -67,14 +67,28 @@ struct Lit {
 inline int light_waves(std::span<FluxMap> maps, const std::vector<Wave>& waves, Vec3 sun, double eta, const Lit& lit) {
   const double h = lit.side / lit.steps;
   const int rim = lit.steps / 100;
-  int missed = 0;
-  for (int j = 0; j < lit.steps; ++j)
+  const auto steps = static_cast<size_t>(lit.steps);
+  const auto x_of = [&](int i) { return lit.x + (i + 0.5) * h - lit.side / 2; };
+  // Sines and cosines of kx x + phase, by wave and column.
+  std::vector<double> sines, cosines;
+  for (const Wave& w : waves)
     for (int i = 0; i < lit.steps; ++i) {
-      const double x = lit.x + (i + 0.5) * h - lit.side / 2, y = lit.y + (j + 0.5) * h - lit.side / 2;
+      const double phase = w.kx * x_of(i) + w.phase;
+      sines.push_back(std::sin(phase)), cosines.push_back(std::cos(phase));
+    }
+  int missed = 0;
+  for (int j = 0; j < lit.steps; ++j) {
+    const double y = lit.y + (j + 0.5) * h - lit.side / 2;
+    std::vector<double> sine_y, cosine_y;  // of ky y, by wave
+    for (const Wave& w : waves) sine_y.push_back(std::sin(w.ky * y)), cosine_y.push_back(std::cos(w.ky * y));
+    for (int i = 0; i < lit.steps; ++i) {
+      const double x = x_of(i);
       double z = 0, zx = 0, zy = 0;
-      for (const Wave& w : waves) {
-        const double phase = w.kx * x + w.ky * y + w.phase;
-        z += w.a * std::sin(phase), zx += w.a * w.kx * std::cos(phase), zy += w.a * w.ky * std::cos(phase);
+      for (size_t k = 0; k < waves.size(); ++k) {
+        const Wave& w = waves[k];
+        const double s = sines[k * steps + static_cast<size_t>(i)], c = cosines[k * steps + static_cast<size_t>(i)];
+        const double sine = s * cosine_y[k] + c * sine_y[k], cosine = c * cosine_y[k] - s * sine_y[k];
+        z += w.a * sine, zx += w.a * w.kx * cosine, zy += w.a * w.ky * cosine;
       }
       const Vec3 up{-zx, -zy, 1};
       const double flux = dot(sun, up) * h * h;
@@ -83,26 +97,39 @@ inline int light_waves(std::span<FluxMap> maps, const std::vector<Wave>& waves, 
       const bool outermost = std::min({i, j, lit.steps - 1 - i, lit.steps - 1 - j}) < rim;
       for (FluxMap& map : maps) missed += map.add({x, y, z}, f.direction, flux * f.transmittance) && outermost;
     }
+  }
   return missed;
 }
 
-// The same beam on a sphere: what passes it by two refractions, and (beside) what passes beside it.
-inline void light_sphere(FluxMap& map, Vec3 centre, double radius, Vec3 sun, double eta, int steps) {
+// The same beam on a sphere: what passes it by two refractions, and (beside) what passes beside it. Rays of one
+// distance from the beam's middle are refracted alike and turned about it: `rings` of equal areas, twice as many rays
+// in each.
+inline void light_sphere(FluxMap& map, Vec3 centre, double radius, Vec3 sun, double eta, int rings) {
   const Frame across = Frame::around(-sun);
-  const double h = 2 * radius / steps;
-  for (int j = 0; j < steps; ++j)
-    for (int i = 0; i < steps; ++i) {
-      const double x = (i + 0.5) * h - radius, y = (j + 0.5) * h - radius, rest = radius * radius - x * x - y * y;
-      if (rest <= 0) continue;
-      const Vec3 in = across.x * x + across.y * y + sun * std::sqrt(rest), n = in / radius;
-      const Forward first = forward_refract(-sun, n, eta);
-      const Vec3 out = in - first.direction * (2 * dot(in, first.direction));
-      const Forward second = forward_refract(first.direction, out / -radius, 1 / eta);
-      if (second.transmittance > 0)
-        map.add(centre + out, second.direction, h * h * first.transmittance * second.transmittance);
+  const int around = 2 * rings;
+  const double area = kPi * radius * radius / rings / around;
+  std::vector<double> sines, cosines;
+  for (int j = 0; j < around; ++j)
+    sines.push_back(std::sin(2 * kPi * j / around)), cosines.push_back(std::cos(2 * kPi * j / around));
+  for (int k = 0; k < rings; ++k) {
+    const double share = (k + 0.5) / rings;
+    const Vec3 in = across.x * (radius * std::sqrt(share)) + sun * (radius * std::sqrt(1 - share)), n = in / radius;
+    const Forward first = forward_refract(-sun, n, eta);
+    const Vec3 out = in - first.direction * (2 * dot(in, first.direction));
+    const Forward second = forward_refract(first.direction, out / -radius, 1 / eta);
+    if (!(second.transmittance > 0)) continue;
+    const double out_across = dot(out, across.x), across_on = dot(second.direction, across.x);
+    const Vec3 out_along = sun * dot(out, sun), along_on = sun * dot(second.direction, sun);
+    // Every ring begins elsewhere (golden section), lest their rays stand in lines.
+    const double turn = 2 * kPi / around * std::fmod(0.6180339887 * k, 1.0), s = std::sin(turn), c = std::cos(turn);
+    for (size_t j = 0; j < sines.size(); ++j) {
+      const Vec3 e = across.x * (cosines[j] * c - sines[j] * s) + across.y * (sines[j] * c + cosines[j] * s);
+      map.add(centre + out_along + e * out_across, along_on + e * across_on,
+              area * first.transmittance * second.transmittance);
     }
+  }
   // Beside it, on the floor: lines towards the sun that miss the sphere.
-  const int fine = steps / 2;
+  const int fine = 4 * rings / 5;
   const double g = map.width / fine;
   for (int j = 0; j < fine; ++j)
     for (int i = 0; i < fine; ++i) {

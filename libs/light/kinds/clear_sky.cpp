@@ -109,9 +109,9 @@ double air_mass(double zenith) {
   return 1 / (std::cos(degrees * kDegree) + 0.50572 * std::pow(96.07995 - degrees, -1.6364));
 }
 
-ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
+ClearSpectra clear_spectra(const ClearSkySpec& spec, Dir sun, const Curve& top) {
   check(spec, sun);
-  const double mu = sun.z, zenith = polar_angle(sun);
+  const double mu = sun.z;
   std::vector<double> coarse, transmittance, scattered, by_molecules;
   for (const Row& row : kRows) {
     coarse.push_back(row.wavelength_um);
@@ -126,11 +126,18 @@ ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
   x.erase(std::unique(x.begin(), x.end(), [](double a, double b) { return b - a < 1e-9; }), x.end());
   std::vector<double> e(x.size()), s(x.size());
   for (size_t i = 0; i < x.size(); ++i) e[i] = top.at(x[i]) * direct.at(x[i]), s[i] = top.at(x[i]) * diffuse.at(x[i]);
-  ClearSky result{Curve(x, e, Outside::error), Curve(x, s, Outside::error), {}};
+  constexpr double kEyeUm = 0.55;
+  ClearSpectra result{Curve(x, e, Outside::error), Curve(x, s, Outside::error),
+                      Curve(coarse, by_molecules, Outside::error).at(kEyeUm)};
+  if (!(result.diffuse.integral(0.3, 4) > 0)) throw Error("the sun of a clear sky gives no light between 0.3 and 4 um");
+  return result;
+}
 
-  const double normal = result.direct.integral(0.3, 4), horizontal = result.diffuse.integral(0.3, 4),
-               extraterrestrial = top.integral(0.3, 4);
-  if (!(horizontal > 0)) throw Error("the sun of a clear sky gives no light between 0.3 and 4 um");
+ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
+  const ClearSpectra spectra = clear_spectra(spec, sun, top);
+  ClearSky result{spectra.direct, spectra.diffuse, {}};
+  const double zenith = polar_angle(sun), normal = result.direct.integral(0.3, 4),
+               horizontal = result.diffuse.integral(0.3, 4), extraterrestrial = top.integral(0.3, 4);
   const PerezSky perez(zenith, normal, horizontal, extraterrestrial, air_mass(zenith));
   SkySpec& sky = result.sky;
   sky.zeniths = 91, sky.azimuths = 180;
@@ -143,9 +150,8 @@ ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
   const double integral = hemispheric_integral(sky);
   for (double& v : sky.table) v /= integral;
   sky.radiance = result.diffuse;
-  constexpr double kMolecules = 0.94, kEyeUm = 0.55;
-  sky.polarisation = RayleighPattern{
-      sun, spec.polarisation.value_or(kMolecules * Curve(coarse, by_molecules, Outside::error).at(kEyeUm))};
+  constexpr double kMolecules = 0.94;
+  sky.polarisation = RayleighPattern{sun, spec.polarisation.value_or(kMolecules * spectra.by_molecules)};
   return result;
 }
 

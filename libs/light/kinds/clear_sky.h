@@ -29,6 +29,12 @@ struct ClearSkySpec {
 // Settles into a sky, and the sun above the air into the one at the ground.
 LightSpecPtr make_light(ClearSkySpec spec);
 
+// Irradiances at the ground, as those of ClearSky.
+struct ClearSpectra {
+  Curve direct, diffuse;
+  double by_molecules = 0;  // share of the diffuse light at 0.55 um that molecules have scattered
+};
+
 struct ClearSky {
   Curve direct;   // W/(m2 um) on a plane facing the Sun, at the ground
   Curve diffuse;  // W/(m2 um) on the horizontal
@@ -38,6 +44,8 @@ struct ClearSky {
 // sun: towards the Sun; top: irradiance above the atmosphere, W/(m2 um) on a plane facing the Sun, covering 0.3 to 4
 // um. Error: Sun at or below the horizon, parameters out of range.
 ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top);
+// The spectra alone: nothing is found of directions. The same errors.
+ClearSpectra clear_spectra(const ClearSkySpec& spec, Dir sun, const Curve& top);
 
 // Relative optical air mass at a zenith angle, rad (Kasten & Young 1989).
 double air_mass(double zenith);

@@ -61,7 +61,7 @@ Off off_ground(const HeatKit& kit, const HeatResult& r, const HeatKit& fine_kit,
 TEST(ErrorCauses, SizeOfElementsAndTheirCut) {
   const Weather weather = summer_weather();
   const WeatherLoads loads = summer_loads(weather, spec_of(600));
-  const HeatKit fine_kit = street(12000, false, weather);
+  const HeatKit fine_kit = street(5000, false, weather);
   const HeatResult fine = fine_kit.solve(loads, spec_of(600));
   Off off[2];
   for (const bool by_sun : {false, true}) {
@@ -87,7 +87,7 @@ TEST(ErrorCauses, StepsInTime) {
   const auto solve = [&](double step) {
     return kit.solve(summer_loads(weather, spec_of(step, kPaths)), spec_of(step, kPaths));
   };
-  const HeatResult fine = solve(75);
+  const HeatResult fine = solve(150);
   double before = INFINITY;
   for (const double step : {1200.0, 600.0}) {
     const HeatResult r = solve(step);

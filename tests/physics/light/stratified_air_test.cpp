@@ -133,10 +133,8 @@ TEST(StratifiedAir, LevelsAreCloseEnough) {
   air.closer = 2;
   const SpectralState closer = with_gas_points(air, intervals);
   // Interval means: g-points of the two need not be the same.
-  const auto seen = [&](const AirSpec& spec, const SpectralState& s, Vec3 from, Dir d, double distance) {
-    const Sun sun(s, 50);
-    const auto made = make_stratified_air(spec, s, {sun.beam});
-    const Seen one = look(*made, s.size(), from, d, distance);
+  const auto seen = [&](const Atmosphere& made, const SpectralState& s, Vec3 from, Dir d, double distance) {
+    const Seen one = look(made, s.size(), from, d, distance);
     std::vector<double> means;
     for (size_t i = 0; i < s.size(); ++i) {
       if (s.bins[i].g == 0) means.insert(means.end(), {0, 0});
@@ -147,12 +145,15 @@ TEST(StratifiedAir, LevelsAreCloseEnough) {
   };
   AirSpec usual = air;
   usual.closer = 1;
+  const Sun sun(state, 50), sun_closer(closer, 50);
+  const auto made = make_stratified_air(usual, state, {sun.beam}),
+             made_closer = make_stratified_air(air, closer, {sun_closer.beam});
   for (const double zenith : {0.0, 60.0, 180.0, 130.0}) {
     const Dir d = dir_from_angles(zenith * kDegree, 1);
     const bool up = d.z > 0;
     const Vec3 from = up ? Vec3{0, 0, 0} : -d * (2e5 / -d.z);
-    const std::vector<double> a = seen(usual, state, from, d, up ? kFar : 2e5 / -d.z),
-                              b = seen(air, closer, from, d, up ? kFar : 2e5 / -d.z);
+    const std::vector<double> a = seen(*made, state, from, d, up ? kFar : 2e5 / -d.z),
+                              b = seen(*made_closer, closer, from, d, up ? kFar : 2e5 / -d.z);
     for (size_t i = 0; i < a.size(); i += 2) {
       EXPECT_NEAR(a[i] / b[i], 1, i / 2 == 4 ? 0.006 : 0.005) << zenith << ", interval " << i / 2;
       EXPECT_NEAR(a[i + 1], b[i + 1], 0.005) << zenith << ", interval " << i / 2;

@@ -22,10 +22,11 @@ void tell(const char* what, const CaptureResult& a, const CaptureResult& b) {
                 b.radiance[i], b.standard_error[i], 100 * (a.radiance[i] / b.radiance[i] - 1));
 }
 // SUITE_LONG: so many times the paths.
-uint32_t many(uint32_t paths) {
+uint32_t many(uint32_t paths, uint32_t in_default) {
   const char* factor = std::getenv("SUITE_LONG");
-  return factor ? static_cast<uint32_t>(std::max(1, std::atoi(factor))) * paths : paths;
+  return factor ? static_cast<uint32_t>(std::max(1, std::atoi(factor))) * paths : in_default;
 }
+uint32_t many(uint32_t paths) { return many(paths, paths); }
 
 SourceSpecs sun_in(AirSpec air, AirScattering scattering, bool adjacency = true) {
   air.scattering = scattering, air.adjacency = adjacency;
@@ -71,7 +72,7 @@ const std::vector<Ray> kOverTheCoast{from_space({-500, 0, 0}, 0, 0), from_space(
 // A body and a cloud of next to nothing, wide of the line of sight and around it, change nothing.
 TEST(LitMedia, NextToNothingChangesNothing) {
   const SourceSpecs air = sun_in(haze(0.4), AirScattering::diffuse);
-  const CaptureResult empty = see(coast(), air, kOverTheCoast, many(4000));
+  const CaptureResult empty = see(coast(), air, kOverTheCoast, many(4000, 2400));
   auto body = coast();
   put_body(*body, almost_nothing(), {-6000, -6000, 200}, {5000, 5000, 3000});
   auto cloud = coast();
@@ -79,7 +80,7 @@ TEST(LitMedia, NextToNothingChangesNothing) {
            grid_of({2, 2, 2}, translation({-4000, -4000, 100}) * scaling({4000, 4000, 1500}),
                    [](uint32_t, uint32_t, uint32_t) { return 1.0; }));
   for (const auto& scene : {body, cloud}) {
-    const CaptureResult filled = see(scene, air, kOverTheCoast, many(4000));
+    const CaptureResult filled = see(scene, air, kOverTheCoast, many(4000, 2400));
     tell(scene == body ? "thin body" : "thin cloud", filled, empty);
     EXPECT_LT(largest_z(filled, empty, 0.001), kSigmas);
     for (size_t i = 0; i < filled.radiance.size(); ++i)
@@ -123,8 +124,8 @@ TEST(LitMedia, APlumeOverACoastIsThatOfTracedAir) {
                    [](uint32_t, uint32_t j, uint32_t) { return 1.0 - 0.1 * j; }));
   const std::vector<Ray> rays{from_space({-400, 0, 0}, 0, 0), from_space({-900, 300, 0}, 25, 3)};
   const AirSpec air = haze(0.4);
-  const CaptureResult traced = see(scene, sun_in(air, AirScattering::traced), rays, many(8000)),
-                      lit = see(scene, sun_in(air, AirScattering::diffuse), rays, many(4000));
+  const CaptureResult traced = see(scene, sun_in(air, AirScattering::traced), rays, many(8000, 4000)),
+                      lit = see(scene, sun_in(air, AirScattering::diffuse), rays, many(4000, 2000));
   tell("plume", lit, traced);
   EXPECT_LT(largest_z(lit, traced), kSigmas);
   EXPECT_GT(largest_z(see(scene, sun_in(air, AirScattering::diffuse, false), rays, 2000), traced), kSigmas);  // control

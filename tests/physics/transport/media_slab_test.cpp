@@ -75,12 +75,23 @@ Fluxes fluxes(const std::shared_ptr<const Scene>& scene, const Case& c, double t
   return {kPi * r.radiance[0], kPi * r.radiance[1], kPi * r.standard_error[0], kPi * r.standard_error[1]};
 }
 
-// The default run compares at 2^16 paths a flux, which resolves some of them to 0.5 %; the run under the label `long`
-// sets SUITE_LONG and resolves all of a body's but one.
+// The run under the label `long` sets SUITE_LONG and resolves all of a body's fluxes to 0.5 % but one. The default run
+// takes 2^14 paths a flux, which know what comes up to 0.1 to 3 % (deviations of 4 of these are seen, p = 6e-5), and
+// more where that resolves a flux. A hundredth of albedo is seen by them (DisortSlabControl).
 bool long_run() { return std::getenv("SUITE_LONG") != nullptr; }
 
 constexpr double kRounding = 2e-5;  // of the table, relative
 constexpr double kBound = 5e-3;     // what every flux has to be within
+
+std::array<int, 2> powers_of(const Case& c) {
+  if (long_run()) return {c.up, c.down};
+  if (c.name == "1f") return {15, 14};
+  if (c.name == "2d") return {16, 14};
+  if (c.name == "3a") return {14, 16};
+  return {14, 14};
+}
+// Deep slabs let so little through that what comes down is known to some ten per cent only, and take most of the time.
+bool deep(double tau) { return tau > 20; }
 
 struct Flux {
   double value, error;
@@ -145,7 +156,8 @@ TEST_P(DisortSlab, FluxesOfABody) {
   const auto table = references();
   ASSERT_TRUE(table.count(c.name)) << "reference data are missing";
   const Reference reference = table.at(c.name);
-  const Fluxes f = fluxes(body_of(c, reference.bottom, c.albedo), c, 1, 1u << 14);
+  const uint32_t paths = long_run() ? 1u << 14 : deep(reference.bottom) ? 1u << 12 : 1u << 13;
+  const Fluxes f = fluxes(body_of(c, reference.bottom, c.albedo), c, 1, paths);
   expect_flux(f.up, f.up_error, reference.up, c.name + " up, sun");
   expect_flux(f.down, f.down_error, reference.down, c.name + " down, sun");
 }
@@ -153,8 +165,7 @@ TEST_P(DisortSlab, FluxesOfABody) {
 TEST_P(DisortSlab, FluxesByReciprocity) {
   const Case c = GetParam();
   const Reference reference = references().at(c.name);
-  const std::array<int, 2> powers = long_run() ? std::array{c.up, c.down} : std::array{16, 16};
-  const auto f = fluxes_by_reciprocity(body_of(c, reference.bottom, c.albedo), c, reference.bottom, 1, powers);
+  const auto f = fluxes_by_reciprocity(body_of(c, reference.bottom, c.albedo), c, reference.bottom, 1, powers_of(c));
   const bool up = expect_flux(f[0].value, f[0].error, reference.up, c.name + " up");
   const bool down = expect_flux(f[1].value, f[1].error, reference.down, c.name + " down");
   EXPECT_TRUE(up || !long_run());
@@ -170,13 +181,12 @@ TEST_P(DisortSlab, FluxesOfAGrid) {
   const Medium m = medium(Curve::constant(tau * (1 - c.albedo)), Curve::constant(tau * c.albedo), c.phase);
   const Affine3 cells = translation({-wide, -wide, 0}) * scaling({2 * wide / 3, 2 * wide / 3, 0.2});
   const auto scene = scene_with(m, grid_of({3, 3, 5}, cells, [](uint32_t, uint32_t, uint32_t) { return 1; }));
-  // Deep slabs let so little through that a grid's share of the work is left to the body.
-  const bool deep = tau > 20;
-  const std::array<int, 2> powers = long_run() ? std::array{c.up, deep ? 18 : c.down} : std::array{14, 14};
+  // What deep slabs let through is left to the body.
+  const std::array<int, 2> powers = long_run() ? std::array{c.up, deep(tau) ? 18 : c.down} : std::array{14, 14};
   const auto f = fluxes_by_reciprocity(scene, c, tau, 1, powers);
   const bool up = expect_flux(f[0].value, f[0].error, reference.up, c.name + " up, grid");
   const bool down = expect_flux(f[1].value, f[1].error, reference.down, c.name + " down, grid");
-  EXPECT_TRUE(!long_run() || (up && (down || deep)));
+  EXPECT_TRUE(!long_run() || (up && (down || deep(tau))));
 }
 
 TEST(DisortSlabControl, OnePercentOfAlbedoIsSeen) {
@@ -185,7 +195,7 @@ TEST(DisortSlabControl, OnePercentOfAlbedoIsSeen) {
     const Case c = cases()[i];
     const Reference reference = references().at(c.name);
     const auto f =
-        fluxes_by_reciprocity(body_of(c, reference.bottom, 0.99 * c.albedo), c, reference.bottom, 1, {16, 8});
+        fluxes_by_reciprocity(body_of(c, reference.bottom, 0.99 * c.albedo), c, reference.bottom, 1, {14, 8});
     EXPECT_GT(std::fabs(f[0].value - reference.up), 4 * f[0].error + kRounding * reference.up) << c.name;
   }
 }

@@ -60,6 +60,7 @@ SourceSpecs sun(double half_angle, double zenith) {
 void expect(const Seen& r, double truth) {
   const double mean = r.radiance[0], error = r.standard_error[0];
   SCOPED_TRACE(testing::Message() << mean << " +- " << error << " for " << truth);
+  std::printf("%.5f +- %.2f %%, off %+.2f %%\n", mean, 100 * error / truth, 100 * (mean / truth - 1));
   EXPECT_NEAR(mean, truth, 0.005 * truth);
   EXPECT_NEAR(mean, truth, 5 * error + 2e-5 * truth);
   EXPECT_LE(r.missing[0], 1e-3 * truth);  // flagged as not resolved beyond
@@ -80,7 +81,7 @@ TEST(RefractedPane, CollimatedSun) {
 TEST(RefractedPane, DoubleGlazing) {
   for (const double zenith : {5.0, 60.0}) {
     const double c = std::cos(zenith * kDegree);
-    expect(run(sun(0, zenith * kDegree), 32768, 2), floor_radiance(c * through(c, 2), 2));
+    expect(run(sun(0, zenith * kDegree), 20480, 2), floor_radiance(c * through(c, 2), 2));
   }
 }
 
@@ -129,7 +130,7 @@ TEST(RefractedPane, SunAndSky) {
     const double c = std::cos(zenith * kDegree);
     SourceSpecs s = sun(0, zenith * kDegree);
     s.add(uniform_sky(0.1, false));
-    expect(run(s, 65536), floor_radiance(c * through(c) + kPi * 0.1 * diffuse([](double z) { return through(z); })));
+    expect(run(s, 16384), floor_radiance(c * through(c) + kPi * 0.1 * diffuse([](double z) { return through(z); })));
   }
 }
 

@@ -65,12 +65,12 @@ Repeated look(const std::shared_ptr<const Scene>& scene, double half, TimeWindow
 }
 
 void expect_mean(const char* what, const Glass& glass, const TrackPtr& track, double half, int moments) {
-  const Repeated moving = look(floor_under(glass, track, {}), half, kOpen, 256);
+  const Repeated moving = look(floor_under(glass, track, {}), half, kOpen, 32);
   Repeated still;
   double least = INFINITY, most = 0;
   for (int i = 0; i < moments; ++i) {
     const double time = (i + 0.5) / moments;
-    const Repeated one = look(floor_under(glass, nullptr, track->at(time).affine()), half, {0, 0}, 512 / moments);
+    const Repeated one = look(floor_under(glass, nullptr, track->at(time).affine()), half, {0, 0}, 128 / moments);
     still.mean += one.mean / moments, still.error = std::hypot(still.error, one.error / moments);
     least = std::fmin(least, one.mean), most = std::fmax(most, one.mean);
   }

@@ -47,13 +47,13 @@ Repeated look(const std::shared_ptr<const Scene>& scene, double half_angle, uint
 }
 
 void expect_alike(const char* what, const ModelSpec& phase) {
-  const Repeated chance = look(bay(phase), kWide, 2048, false), guided = look(bay(phase), kWide, 256, true);
+  const Repeated chance = look(bay(phase), kWide, 2048, false), guided = look(bay(phase), kWide, 32, true);
   std::printf("%s: by chance %.5g +- %.2f %%, guided %.5g +- %.2f %%\n", what, chance.mean,
               100 * chance.error / chance.mean, guided.mean, 100 * guided.error / guided.mean);
   EXPECT_NEAR(chance.mean, guided.mean, 3.5 * std::hypot(chance.error, guided.error)) << what;  // p = 5e-4
   EXPECT_LT(std::max(chance.error, guided.error), 0.04 * guided.mean) << what;
   // Negative control: water that absorbs half as much again, a fifth of the light, would be seen.
-  const Repeated darker = look(bay(phase, 0.075), kWide, 256, true);
+  const Repeated darker = look(bay(phase, 0.075), kWide, 32, true);
   EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error)) << what;
 }
 
@@ -72,7 +72,7 @@ TEST(WaterGuided, FindsItInEveryBand) {
   const Curve absorption(um, {0.02, 0.05, 0.15, 0.5}, Outside::hold),
       scattering(um, {0.4, 0.3, 0.2, 0.1}, Outside::hold);
   const Rendered chance = look(bay(hg(0.9), absorption, scattering), bands, kWide, 3072, false),
-                 guided = look(bay(hg(0.9), absorption, scattering), bands, kWide, 256, true);
+                 guided = look(bay(hg(0.9), absorption, scattering), bands, kWide, 32, true);
   double furthest = 0;
   for (size_t b = 0; b < bands.size(); ++b) {
     const Repeated one = over_problems(chance.result, b), other = over_problems(guided.result, b);
@@ -91,8 +91,9 @@ TEST(WaterGuided, FindsItInEveryBand) {
 // continuation 1.3, both 0.48; chains (techniques/volume_chains.h) have 0.20. Rare chains weigh much: with other
 // numbers for them 0.92 was seen.
 TEST(WaterGuided, SmallSunsMakeLittleNoise) {
-  const Repeated seen = look(bay(hg(0.924)), 0.27 * kDegree, 512, true);
-  const double spread = seen.error * 8 * std::sqrt(512.0) / seen.mean;
+  constexpr uint32_t kPaths = 192;  // in each of 64 problems
+  const Repeated seen = look(bay(hg(0.924)), 0.27 * kDegree, kPaths, true);
+  const double spread = seen.error * 8 * std::sqrt(double{kPaths}) / seen.mean;
   std::printf("spread %.2f\n", spread);
   EXPECT_LT(spread, 0.3);
 }

@@ -82,7 +82,7 @@ Light look(double depth, double bed, Light& error, double absorption = kAbsorpti
   const Vec3 at{0, 0, -depth};
   const auto run = [&](std::vector<Ray> rays, bool sphere) {
     const Rendered r =
-        render(water(bed, absorption, bottom), sources, std::make_unique<Receivers>(std::move(rays), 1 << 15, sphere));
+        render(water(bed, absorption, bottom), sources, std::make_unique<Receivers>(std::move(rays), 1 << 12, sphere));
     EXPECT_EQ(r.report.statistics.failures, 0u);
     return r.result;
   };
