@@ -58,7 +58,7 @@ class Documents(Case):
 
     @unittest.skipUnless(shutil.which("gdal_translate"), "needs gdal-bin")
     def test_the_page_on_own_files_makes_a_cube(self):
-        """With a hill, a pyramid and two flat spectra in the place of a user's files, and a tenth of the pixels to a side."""
+        """With a hill, a pyramid and two flat spectra in the place of a user's files, a tenth of the pixels to a side and two paths."""
         self.in_folder()
         section = (ROOT / "docs/guide" / OWN_FILES).read_text().split("\n## ")[1]
         name, text = re.search(r"^```yaml\n# (\S+)\n(.*?)^```", section, re.S | re.M).groups()
@@ -71,7 +71,8 @@ class Documents(Case):
             (self.folder / f"{kind}.spectrum.txt").write_text("".join(f"{0.3 + 0.1 * i:.2f},{value}\n" for i in range(25)))
         code = re.search(r"^```python\n(.*?)^```", section, re.S | re.M)[1]
         small = code.replace("columns=120, rows=80, gsd_m=20", "columns=12, rows=8, gsd_m=200").replace('"pixel_m": 20', '"pixel_m": 200')
-        self.assertEqual(small.count("200"), 2)
+        small = small.replace("paths=16", "paths=2")
+        self.assertEqual((small.count("200"), small.count("paths=2")), (2, 1))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", rs.ProgramWarning)  # bins that miss 0.1 % by little
             exec(compile(small, OWN_FILES, "exec"), {})
