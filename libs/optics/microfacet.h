@@ -9,7 +9,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-
+#include <span>
 #include <vector>
 
 #include "math/sampling.h"
@@ -82,6 +82,9 @@ class Ggx::View {
     const double p1 = sample.x, p2 = (1 - s) * std::sqrt(std::max(0.0, 1 - p1 * p1)) + s * sample.radius * sample.sine;
     const Vec3 n = t1_ * p1 + t2_ * p2 + v_ * std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2));
     return normalized({facets_.ax * n.x, facets_.ay * n.y, std::max(0.0, n.z)});
+  }
+  void normals(std::span<const Sample> samples, std::span<Dir> h) const {
+    for (size_t i = 0; i < samples.size(); ++i) h[i] = normal(samples[i]);
   }
 
  private:

@@ -117,15 +117,18 @@ class FacetMirror {
       for (size_t a = 0; a < angles; ++a) row[a] = static_cast<float>(colour_.reflectance(FacetGrid::cosine(a), b));
     }
     again_ = DirectionalTable(facets_.ax, facets_.ay, FacetGrid::kRows, bins_, [&](Dir o, std::span<float> A) {
-      for (size_t b = 0; b < A.size(); ++b)
-        A[b] = static_cast<float>(tables_->missed(o) * tables_->repeated(o, {fresnel.data() + b * angles, angles}));
+      std::vector<double> repeated(A.size());
+      tables_->repeated(o, fresnel, repeated);
+      const double missed = tables_->missed(o);
+      for (size_t b = 0; b < A.size(); ++b) A[b] = static_cast<float>(missed * repeated[b]);
     });
     scale_again();
     total_ = DirectionalTable(facets_.ax, facets_.ay, FacetGrid::kRows, bins_, [&](Dir o, std::span<float> W) {
       std::vector<float> once(angles);
       tables_->single(o, once);
+      const DirectionalTable::Place place = again_.locate(o);
       for (size_t b = 0; b < W.size(); ++b) {
-        double sum = again_.at(o, b);
+        double sum = again_.at(place, b);
         for (size_t a = 0; a < angles; ++a) sum += once[a] * fresnel[b * angles + a];
         W[b] = static_cast<float>(sum);
       }

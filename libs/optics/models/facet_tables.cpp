@@ -24,6 +24,26 @@ void add_hat(double c, double weight, std::span<double> hats) {
   hats[a + 1] += weight * share;
 }
 
+// The samples of the mean in order of u.x, and where the i-th of Sobol's sequence stands in that order. Neighbours then
+// take the same branches of erf and the same count of Newton's steps; sums keep the order of the sequence, on which
+// their last bits depend.
+template <class Facets>
+struct SortedSamples {
+  std::vector<typename Facets::Sample> samples;
+  std::vector<uint32_t> rank;
+  SortedSamples() : rank(Facets::kBakingPoints) {
+    const std::vector<Vec2> points = baking_points(Facets::kBakingPoints);
+    std::vector<uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return points[a].x < points[b].x; });
+    samples.reserve(order.size());
+    for (const uint32_t i : order) {
+      rank[i] = static_cast<uint32_t>(samples.size());
+      samples.push_back(Facets::sample(points[i]));
+    }
+  }
+};
+
 // Shares of orders and of nodes among walks from `out` that meet more than one facet.
 template <class Facets>
 void walk(const Facets& facets, Dir out, size_t count, std::span<float> shares) {
@@ -63,17 +83,30 @@ template <class Facets>
 FacetTables<Facets>::FacetTables(Roughness roughness) {
   const Facets facets{roughness.x, roughness.y};
   const bool isotropic = facets.ax == facets.ay;
-  const auto samples = baking_samples<Facets>(Facets::kBakingPoints);
+  const SortedSamples<Facets> sorted;
   single_ = DirectionalTable(facets.ax, facets.ay, kRows, kAngles, [&](Dir o, std::span<float> once) {
-    std::vector<double> hats(kAngles);
+    struct Met {
+      double cosine, weight;  // cosine 0: not lit
+    };
+    thread_local std::vector<Met> met;
+    thread_local std::vector<Dir> directions;  // of normals, then of the light
+    met.resize(sorted.samples.size()), directions.resize(met.size());
     const typename Facets::View view(facets, o);
     const double lambda = facets.lambda(o), masking = 1 / (1 + lambda);
-    for (const typename Facets::Sample& sample : samples) {
-      const Dir h = view.normal(sample);
-      const double c = dot(o, h);
-      const Dir in = h * (2 * c) - o;
-      if (in.z > 0 && c > 0) add_hat(c, 1 / (1 + lambda + facets.lambda(in)) / masking / Facets::kBakingPoints, hats);
+    view.normals(sorted.samples, directions);
+    for (size_t k = 0; k < met.size(); ++k) {
+      const Dir h = directions[k];
+      met[k].cosine = dot(o, h);
+      directions[k] = h * (2 * met[k].cosine) - o;
     }
+    for (size_t k = 0; k < met.size(); ++k)
+      if (directions[k].z > 0 && met[k].cosine > 0)
+        met[k].weight = 1 / (1 + lambda + facets.lambda(directions[k])) / masking / Facets::kBakingPoints;
+      else
+        met[k].cosine = 0;
+    std::vector<double> hats(kAngles);
+    for (const uint32_t k : sorted.rank)
+      if (met[k].cosine > 0) add_hat(met[k].cosine, met[k].weight, hats);
     std::copy(hats.begin(), hats.end(), once.begin());
   });
   missed_ = DirectionalTable(facets.ax, facets.ay, kRows, 1, [&](Dir o, std::span<float> missed) {
@@ -93,14 +126,17 @@ FacetTables<Facets>::FacetTables(Roughness roughness) {
 }
 
 template <class Facets>
-double FacetTables<Facets>::repeated(Dir out, std::span<const float> F) const {
+void FacetTables<Facets>::repeated(Dir out, std::span<const float> F, std::span<double> means) const {
   std::vector<float> shares(kOrders + kAngles);
   walks_.at(out, shares);
-  double mean = 0, sum = 0;
-  for (size_t a = 0; a < kAngles; ++a) mean += shares[kOrders + a] * F[a];
-  double power = mean;
-  for (size_t k = 0; k < kOrders; ++k) sum += shares[k] * (power *= mean);
-  return sum;
+  for (double& sum : means) {
+    double mean = 0;
+    for (size_t a = 0; a < kAngles; ++a) mean += shares[kOrders + a] * F[a];
+    double power = mean;
+    sum = 0;
+    for (size_t k = 0; k < kOrders; ++k) sum += shares[k] * (power *= mean);
+    F = F.subspan(kAngles);
+  }
 }
 
 template class FacetTables<Ggx>;

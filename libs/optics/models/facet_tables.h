@@ -38,9 +38,9 @@ class FacetTables : public FacetGrid {
   void single(Dir out, std::span<float> once) const { single_.at(out, once); }
   // Share of what arrives from (or leaves to) `out` that meets more than one facet, out.z > 0, at reflectance 1.
   double missed(Dir out) const { return std::max(0.0f, missed_.at(out, 0)); }
-  // Mean over the light from `out` that meets more than one facet of the product of reflectances that it meets; F at
-  // the nodes, out.z > 0. Facets are taken for independent of each other.
-  double repeated(Dir out, std::span<const float> F) const;
+  // Means over the light from `out` that meets more than one facet of the product of reflectances that it meets, for
+  // several rows of F at the nodes, [row][kAngles]; out.z > 0. Facets are taken for independent of each other.
+  void repeated(Dir out, std::span<const float> F, std::span<double> means) const;
   const PolarLobe& lobe() const { return *lobe_; }  // follows `missed`
 
  private:

@@ -7,6 +7,7 @@
 // the distribution of visible normals", EGSR 2014.
 #pragma once
 #include <cstdint>
+#include <span>
 
 #include "math/vec.h"
 
@@ -35,9 +36,19 @@ class GaussFacets::View {
  public:
   View(GaussFacets facets, Dir out);
   Dir normal(Sample s) const;
+  // The same of many samples, to the last bit, in some 0.6 of the time: step by step for all of them, so that the
+  // processor works on several at once. Fastest where neighbours differ little. h.size() == s.size().
+  void normals(std::span<const Sample> s, std::span<Dir> h) const;
 
  private:
+  // A slope's search by Newton's steps: where it is, and the bracket.
+  struct Search {
+    double m, low, high;
+  };
+  Search start(double power) const;                                                 // power: u to the fit_
+  Search next(const Search& search, double wanted, double fall, double erf) const;  // wanted: u total_
   double slope(double u) const;
+  Dir normal(double slope, double across) const;
   GaussFacets facets_;
   double cosine_, sine_, cx_, cy_;  // of the view over slopes of unit roughness, and its azimuth
   double least_ = 0, edge_ = 0, erf_least_ = 0, total_ = 0, fit_ = 0;

@@ -5,7 +5,9 @@
 #include <complex>
 
 #include "math/sampling.h"
+#include "optics/microfacet.h"
 #include "optics/models.h"
+#include "optics/models/gauss_facets.h"
 #include "support/conformance.h"
 
 namespace suite::fresnel_test {
@@ -97,6 +99,22 @@ TEST(Fresnel, RoughInterfaceIsReciprocalInBasicRadiance) {
       }
       for (const auto& row : compared)
         for (const int count : row) EXPECT_GT(count, 2000);
+    }
+}
+
+// Tables and rays see the same normals: many at once are those of one at a time to the last bit, of views from the
+// pole to below the horizon and counts that fill no block.
+TEST(GaussFacets, NormalsOfManySamplesAreThoseOfOne) {
+  const auto samples = baking_samples<GaussFacets>(256);
+  for (const GaussFacets facets : {GaussFacets{0.22, 0.19}, GaussFacets{0.05, 0.6}, GaussFacets{0.9, 0.3}})
+    for (const double polar : {0.0, 0.02, 0.7, 1.3, 1.56, 1.8, 2.8}) {
+      const GaussFacets::View view(facets, dir_from_angles(polar, 0.4));
+      std::vector<Dir> many(101);
+      view.normals(std::span(samples).first(many.size()), many);
+      for (size_t i = 0; i < many.size(); ++i) {
+        const Dir one = view.normal(samples[i]);
+        EXPECT_TRUE(one.x == many[i].x && one.y == many[i].y && one.z == many[i].z) << polar << ", sample " << i;
+      }
     }
 }
 
