@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <numeric>
+#include <thread>
 
 #include "air/gas_intervals.h"
 #include "support/message_of.h"
@@ -18,7 +21,7 @@ using testing::HasSubstr;
 // Every band has the same absorbers, which the test gives.
 struct Given final : GasProvider {
   std::vector<GasPoints> all;
-  mutable int asked = 0;
+  mutable std::atomic<int> asked = 0;
   double low_um() const override { return 1; }
   double high_um() const override { return 10; }
   std::string note() const override { return "given by a test"; }
@@ -185,6 +188,26 @@ TEST(GasIntervals, are_the_points_of_the_interval_computed_once) {
   intervals.points(3, 4), intervals.points(4, 5), intervals.points(4, 5);
   EXPECT_EQ(given->asked, 4);
   EXPECT_EQ(intervals.kept(), 2u);
+}
+
+TEST(GasIntervals, are_the_same_for_many_threads) {
+  const std::vector<AirLevel> levels = uniform(3, 1e4);
+  const auto given = std::make_shared<Given>();
+  given->all = {points({0.5, 0.5}, {1e-5, 1e-3}, {1, 0.5, 0.25})};
+  GasIntervals intervals(given, levels, {}, 40);
+  std::array<size_t, 4> same{};
+  std::vector<std::thread> threads;
+  const GasPoints wanted = gas_points(*given, levels, 2, 3);
+  for (size_t t = 0; t < same.size(); ++t)
+    threads.emplace_back([&, t] {
+      for (int n = 0; n < 400; ++n) {
+        const double low = 2 + 0.1 * ((n + 13 * static_cast<int>(t)) % 50);
+        same[t] += intervals.points(low, low + 1)->absorption == wanted.absorption;
+      }
+    });
+  for (std::thread& t : threads) t.join();
+  for (const size_t n : same) EXPECT_EQ(n, 400u);
+  EXPECT_EQ(intervals.kept(), 40u);
 }
 
 TEST(GasIntervals, are_shared_by_the_same_air_alone) {
