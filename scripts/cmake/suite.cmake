@@ -148,8 +148,9 @@ function(suite_forbid target)
   endwhile()
 endfunction()
 
-# What the leak sanitizer must not count: leaks of libraries that are not ours.
-set(SUITE_LEAKS "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/fuzz/leaks_of_libraries.txt:print_suppressions=0")
+# What sanitizers must not count: leaks of libraries that are not ours, and tasks that TBB hands from thread to thread.
+set(SUITE_SUPPRESSIONS "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/fuzz/leaks_of_libraries.txt:print_suppressions=0"
+                "TSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/support/races_of_libraries.txt:print_suppressions=0")
 
 # The name of a test from its place: "optics/ward" in tests/unit is unit_optics_ward, of tests/unit/optics/ward_test.cpp.
 # <library> is a folder of libs, format_<folder> of formats, or a folder of apps with _ for -.
@@ -239,7 +240,7 @@ function(suite_test place)
   _suite_test_name(${place} name label)
   _suite_program_of(${place} ${label} program)
   _suite_test_program(${program} ${place}_test.cpp "${A_USES};${A_VENDOR}")
-  suite_entry(${name} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
+  suite_entry(${name} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp ENVIRONMENT "${SUITE_SUPPRESSIONS}" ${A_ENVIRONMENT})
   if("${name}" IN_LIST SUITE_QUICK)
     set_property(GLOBAL APPEND PROPERTY SUITE_QUICK_PROGRAMS ${program})
   endif()
@@ -251,7 +252,7 @@ function(suite_test_long place)
   _suite_test_name(${place} name label)
   _suite_program_of(${place} ${label} program)
   suite_entry(${name}_long LABEL long TIMEOUT ${A_SECONDS} COMMAND $<TARGET_FILE:${program}> --source=${label}/${place}_test.cpp
-              ENVIRONMENT "${SUITE_LEAKS}" ${A_ENVIRONMENT})
+              ENVIRONMENT "${SUITE_SUPPRESSIONS}" ${A_ENVIRONMENT})
 endfunction()
 
 # suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: 1000 an input in the default run,
