@@ -14,9 +14,27 @@
 
 #include "base/interrupt.h"
 
+#if defined(__SANITIZE_THREAD__)
+extern "C" void __tsan_acquire(void*);  // of GCC's library of the sanitizer
+extern "C" void __tsan_release(void*);
+#endif
+
 namespace suite {
 
 namespace {
+// What one thread did before is seen by another afterwards: told to the thread sanitizer, which does not see how TBB's
+// library, built without it, hands pieces from thread to thread.
+class HandedOver {
+ public:
+#if defined(__SANITIZE_THREAD__)
+  void release() { __tsan_release(this); }
+  void acquire() { __tsan_acquire(this); }
+#else
+  void release() {}
+  void acquire() {}
+#endif
+};
+
 std::mutex g_mutex;
 int g_threads = 0;
 std::unique_ptr<tbb::global_control> g_control;
@@ -50,14 +68,22 @@ void parallel_for(size_t begin, size_t end, size_t grain, const std::function<vo
   if (grain < 1) grain = 1;
   const size_t blocks = (end - begin + grain - 1) / grain;
   const bool finish = FinishFirst::here();
+  HandedOver begun, done;
   const auto piece = [&](size_t b) {
+    begun.acquire();
     std::optional<FinishFirst> first;
     if (finish) first.emplace();
     if (stop == StopPoints::between_pieces) stop_point();
     body(begin + b * grain, std::min(end, begin + (b + 1) * grain));
+    done.release();
   };
   const std::shared_ptr<tbb::task_arena> here = arena();  // another thread may set another number of threads meanwhile
-  here->execute([&] { tbb::parallel_for(size_t{0}, blocks, piece, tbb::simple_partitioner()); });
+  here->execute([&] {
+    begun.release();
+    tbb::parallel_for(size_t{0}, blocks, piece, tbb::simple_partitioner());
+    done.acquire();
+  });
+  done.acquire();
 }
 
 void on_threads(int count, const std::function<void()>& body) {
