@@ -78,11 +78,8 @@ void parallel_for(size_t begin, size_t end, size_t grain, const std::function<vo
     done.release();
   };
   const std::shared_ptr<tbb::task_arena> here = arena();  // another thread may set another number of threads meanwhile
-  here->execute([&] {
-    begun.release();
-    tbb::parallel_for(size_t{0}, blocks, piece, tbb::simple_partitioner());
-    done.acquire();
-  });
+  begun.release();
+  here->execute([&] { tbb::parallel_for(size_t{0}, blocks, piece, tbb::simple_partitioner()); });
   done.acquire();
 }
 
