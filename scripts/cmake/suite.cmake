@@ -196,8 +196,9 @@ function(suite_entry name)
   if("${name}" IN_LIST SUITE_QUICK)
     list(APPEND labels quick)
   endif()
-  add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/tests/support/measured ${processor} ${A_COMMAND})
-  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${A_TIMEOUT}
+  add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/tests/support/measured ${processor} ${A_TIMEOUT} ${A_COMMAND})
+  math(EXPR ended "${A_TIMEOUT} + 60")  # `measured` ends it, and needs time to print the stacks of what hangs
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${ended}
                        ENVIRONMENT_MODIFICATION "PATH=path_list_prepend:${SUITE_TEST_PATH}")
   if(DEFINED SUITE_COST_${name})
     set_tests_properties(${name} PROPERTIES COST ${SUITE_COST_${name}})
