@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "support/programs_kit.h"
+#include "support/ranks_kit.h"
 
 namespace suite::heat_operator_test {
 namespace {
@@ -206,20 +207,15 @@ TEST_F(HeatOperatorRun, WhatDoesNotFitIsRefused) {
 }
 
 TEST_F(HeatOperatorRun, OneRankFindsForAll) {
-  if (std::string(SUITE_MPIEXEC).empty()) GTEST_SKIP() << "MPI was not found when this build was configured";
+  if (!has_ranks()) GTEST_SKIP() << kNoRanks;
   const std::string small =
       " -q --set sensors.0.columns=20 --set sensors.0.rows=15 --set sensors.0.pitch_um=600 --set sensors.0.paths=2";
   // The same temperatures as of a search of its own: OtherWeatherIsThatOfAFreshSearch.
   const CommandResult alone =
       run("dirsig-render sim.yaml -o alone --heat-operator first/heat_operator.h5" + kFew + small);
   ASSERT_EQ(alone.code, 0) << alone.err;
-  const CommandResult ranks =
-      run_command("cd '" + folder_->path() +
-                  "' && export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                  "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
-                  "OMPI_MCA_btl_vader_single_copy_mechanism=none && timeout -k 5 300 " SUITE_MPIEXEC
-                  " -n 2 " SUITE_BIN_DIR "/dirsig-render sim.yaml -o ranks" +
-                  kFew + small);
+  const CommandResult ranks = run_command("cd '" + folder_->path() + "' && " + kRanksAnywhere + of_ranks(2) +
+                                          SUITE_BIN_DIR "/dirsig-render sim.yaml -o ranks" + kFew + small);
   ASSERT_EQ(ranks.code, 0) << ranks.err;
   EXPECT_EQ(read_bytes(*folder_ / "ranks/dawn.img"), read_bytes(*folder_ / "alone/dawn.img"));
   EXPECT_EQ(text("ranks/heat.csv"), text("alone/heat.csv"));

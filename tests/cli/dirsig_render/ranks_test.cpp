@@ -11,19 +11,13 @@
 
 #include "support/driving_car.h"
 #include "support/programs_kit.h"
+#include "support/ranks_kit.h"
 
 namespace suite::ranks_test {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-// Open MPI's words, which others do not mind: more ranks than cores, as root, not each on a core of its own, in a
-// container. It does not free all that it takes, so leaks are looked for in runs of one process alone.
-constexpr const char* kAnywhere =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
-    "OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none "
-    "ASAN_OPTIONS=detect_leaks=0 ";
 
 bool at_length() { return std::getenv("SUITE_LONG") != nullptr; }
 
@@ -51,15 +45,13 @@ class Ranks : public ProgramsTest<Ranks> {
     ASSERT_EQ(r.code, 0) << r.err;
   }
   void SetUp() override {
-    if (std::string(SUITE_MPIEXEC).empty()) GTEST_SKIP() << "MPI was not found when this build was configured";
+    if (!has_ranks()) GTEST_SKIP() << kNoRanks;
   }
   static CommandResult shell(const std::string& command) {
-    return run_command("cd '" + folder_->path() + "' && export " + kAnywhere + "&& " + command);
+    return run_command("cd '" + folder_->path() + "' && " + kRanksAnywhere + command);
   }
   // mpirun of so many ranks, each of which runs `program`.
-  static std::string ranks(int n, const std::string& program) {
-    return strf("timeout -k 5 300 " SUITE_MPIEXEC " -n %d ", n) + program;
-  }
+  static std::string ranks(int n, const std::string& program) { return of_ranks(n) + program; }
   static std::string render(int n, const std::string& arguments) {
     const CommandResult r = shell(ranks(n, SUITE_BIN_DIR "/dirsig-render " + arguments));
     EXPECT_EQ(r.code, 0) << n << " ranks: " << arguments << "\n" << r.err;
@@ -169,10 +161,9 @@ TEST_F(Ranks, end_together_when_one_fails_at_work) {
 
 TEST_F(Ranks, that_differ_or_cannot_run_are_refused) {
   const std::string render = SUITE_BIN_DIR "/dirsig-render ", never = "-o never -q ";
-  const std::string mpi = "timeout -k 5 300 " SUITE_MPIEXEC " ";
   std::filesystem::create_directory(*folder_ / "other");
   write_file(*folder_ / "other/sim.yaml", std::string_view(kDay + camera("a", 8, 8, 3, "16")));
-  const std::string pair = mpi + "-n 1 " + render + "sim.yaml " + never + ": -n 1 ";
+  const std::string pair = of_ranks(1) + render + "sim.yaml " + never + ": -n 1 ";
   const std::string there = "-wdir '" + (*folder_ / "other") + "' ";
   refused(pair + there + render + "sim.yaml " + never, 1, "scene.h5: error: no such file");
   std::filesystem::copy(*folder_ / "scene.h5", *folder_ / "other/scene.h5");
@@ -185,7 +176,7 @@ TEST_F(Ranks, that_differ_or_cannot_run_are_refused) {
   std::ofstream(*folder_ / "built/dirsig-render", std::ios::app) << 'x';
   refused(pair + "built/dirsig-render sim.yaml " + never, 1, "rank 1 on host ");
   refused(ranks(2, render + "missing.yaml " + never), 1, "missing.yaml: error: no such file");
-  refused(mpi + "-n 1 " + there + render + "missing.yaml " + never + ": -n 1 " + render + "missing.yaml " + never, 1,
+  refused(of_ranks(1) + there + render + "missing.yaml " + never + ": -n 1 " + render + "missing.yaml " + never, 1,
           "missing.yaml: error: no such file");
   refused(ranks(2, render + "sim.yaml -q -o /proc/never"), 1, "/proc/never: error: folder cannot be made");
   refused(ranks(3, render + "sim.yaml --nonsense " + never), 2, "unknown option '--nonsense'");
