@@ -1,6 +1,7 @@
 """Fitted functions and prepared scenes within this process: the values of sqt-inspect to the last bit, places in closed form."""
 import csv
 import math
+import os
 import shutil
 import subprocess
 import sys
@@ -449,8 +450,11 @@ int main(int n, char** given) {
 }
 """)
         library = find_library()
-        subprocess.run([compiler, "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", f"-I{ROOT}/apps/in-process", "x.c", "-o",
-                        "x", str(library), f"-Wl,-rpath,{library.parent}"], cwd=self.folder, check=True)
+        # Beside a library built for the address sanitizer the program has to be, too: a sanitizer that starts with the first allocation
+        # of a library (p11-kit's of a locale, under the lock of locales) leaves that lock broken, and the program waits for it at its end.
+        sanitizer = ["-fsanitize=address"] if "libasan" in os.environ.get("LD_PRELOAD", "") else []
+        subprocess.run([compiler, "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", *sanitizer, f"-I{ROOT}/apps/in-process", "x.c",
+                        "-o", "x", str(library), f"-Wl,-rpath,{library.parent}"], cwd=self.folder, check=True)
         run("sqt-fit", "-q", "--model", "lambert:reflectance=0.5", "-o", self.folder / "l.sqt")
         done = subprocess.run([self.folder / "x", self.folder / "l.sqt"], capture_output=True, text=True, check=True)
         with rs.open_sqt(self.folder / "l.sqt") as lambert:
