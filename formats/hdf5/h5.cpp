@@ -182,8 +182,9 @@ void Writer::write(const std::string& name, hid_t type, const void* data, size_t
 }
 
 void Writer::put_names(const std::string& name, const std::vector<std::string>& names) {
+  // A zero byte after the longest, too: netCDF's library looks for one.
   size_t longest = 1;
-  for (const std::string& n : names) longest = std::max(longest, n.size());
+  for (const std::string& n : names) longest = std::max(longest, n.size() + 1);
   std::string all(longest * names.size(), '\0');
   for (size_t i = 0; i < names.size(); ++i)
     std::copy(names[i].begin(), names[i].end(), all.begin() + static_cast<std::ptrdiff_t>(i * longest));

@@ -180,7 +180,7 @@ class Programs(Case):
         return mock.patch.dict(os.environ, {"REMOTE_SCENES_BIN": str(self.folder)})
 
     def test_bugs_and_stops_are_told_apart(self):
-        for script, kind in (("echo 'scene-prep: bug: x' >&2; exit 3", rs.ProgramBug), ("kill -SEGV $$", rs.ProgramBug),
+        for script, kind in (("echo 'scene-prep: bug: x' >&2; exit 3", rs.ProgramBug), ("kill -ABRT $$", rs.ProgramBug),
                              ("exit 130", rs.Interrupted), ("exit 143", rs.Interrupted)):
             with self.stand_in(script), self.assertRaises(kind):
                 rs.run_program("scene-prep", [])
