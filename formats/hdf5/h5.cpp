@@ -182,7 +182,7 @@ void Writer::write(const std::string& name, hid_t type, const void* data, size_t
 }
 
 void Writer::put_names(const std::string& name, const std::vector<std::string>& names) {
-  // A zero byte after the longest, too: netCDF's library looks for one.
+  // Null-terminated, the longest too: netCDF's library reads on until a zero byte.
   size_t longest = 1;
   for (const std::string& n : names) longest = std::max(longest, n.size() + 1);
   std::string all(longest * names.size(), '\0');
@@ -341,7 +341,7 @@ std::vector<std::string> Reader::get_names(const std::string& name, long long ro
   const Opened d = open(name, -1, "", 1, rows);
   const Handle type(H5Dget_type(d.dataset), H5Tclose);
   const size_t size = H5Tget_size(type);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || size == 0 || size > kMaxText)
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || size == 0 || size > kMaxText + 1)
     fail("dataset '" + name + "' holds no names");
   std::string all(size * d.count, '\0');
   read(name, d, text_type(size), all.data(), 0, d.count);

@@ -27,7 +27,7 @@ expect "a program that is not there" 127 'not_a_program' unlimited 60 not_a_prog
 expect "a loop without end" 137 '^measured: ended, perhaps for taking more than 1 s of the processor' 1 60 bash -c 'while :; do :; done'
 expect "a test that waits for ever" 124 '^measured: ended after 1 s of the clock' unlimited 1 sleep 100
 expect "what it waits for" 124 '^measured: process [0-9]+: sleep 99 ' unlimited 1 bash -c 'sleep 99; true'
-expect "where it waits" 124 'nanosleep|thread [0-9]+, sleep' unlimited 1 bash -c 'sleep 98; true'
+expect "where it waits" 124 '^  thread [0-9]+, sleep: S, ' unlimited 1 bash -c 'sleep 98; true'
 # What a test leaves running does not keep it: sooner than the limit of the clock.
 expect "a child that stays" 0 '^measured: ' unlimited 2 bash -c 'sleep 5 > /dev/null 2>&1 & true'
 exit $wrong

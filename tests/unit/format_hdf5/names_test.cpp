@@ -9,7 +9,7 @@
 namespace suite::h5::format_hdf5_names_test {
 namespace {
 
-TEST(Names, EndWithAZeroByte) {
+TEST(Names, AreNullTerminated) {
   const TempFolder folder;
   const std::string path = folder / "names.h5";
   const std::vector<std::string> names = {"grass", "", "the longest", "ä"};
